@@ -1,0 +1,124 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <string>
+#include <vector>
+
+#include "core/lattice.hpp"
+#include "core/transform.hpp"
+
+namespace concord {
+
+/// What people, robots and programs ask for. Each is a value the bus has already checked (names on the whitelist,
+/// numbers finite, sizes capped); `id` is the asker's, and a request sent twice with one id is done once.
+
+/// Puts an agent's submap into the map.
+struct TransformRequest {
+  std::string id;
+  std::string author;
+  std::string agent;
+  std::string frame_id;  ///< the agent's frame it was found for; empty: the present one
+  Transform T_map_agent = Transform::Identity();
+};
+
+/// Pins voxels of the map, or takes them away, for good.
+struct EditRequest {
+  enum class Op { kAdd, kDelete };
+  std::string id;
+  std::string author;
+  Op op = Op::kAdd;
+  std::vector<VoxelIndex> voxels;  ///< map lattice; sorted, unique, in bounds
+  std::int64_t utime = 0;
+};
+
+/// Ends what an agent has sent: `kReset` keeps the agent and waits for a new frame, `kRemove` forgets it.
+struct AgentRequest {
+  enum class Op { kReset, kRemove };
+  std::string id;
+  std::string agent;
+  Op op = Op::kReset;
+};
+
+/// Asks for one point per occupied cell of `resolution`, as SLAM-XR's downsampler service does.
+struct DownsampleRequest {
+  std::string id;
+  std::string agent;
+  double resolution = 0.5;  ///< metres
+};
+
+/// Saving, listing and loading of maps. `kLoad` makes the file one more agent called `agent`.
+struct MapRequest {
+  enum class Op { kSave, kList, kLoad };
+  std::string id;
+  Op op = Op::kSave;
+  std::string map;     ///< name without extension
+  std::string format;  ///< "bt" or "ot"; empty with kLoad: whichever exists
+  bool overwrite = false;
+  std::string agent;  ///< with kLoad; empty: the map's name
+};
+
+/// Asks for a path on the grid. With `keep_active` it is replanned whenever a change of the map touches it.
+struct PathRequest {
+  std::string id;
+  std::string robot;
+  std::optional<Eigen::Vector2d> start;  ///< map frame; absent: the robot's last pose
+  Eigen::Vector2d goal = Eigen::Vector2d::Zero();
+  double radius = 0.0;  ///< robot radius; 0: the site file's for this robot
+  bool keep_active = false;
+};
+
+/// Where a robot is in its own frame.
+struct AgentPose {
+  std::string agent;
+  std::string frame_id;
+  Transform T_agent_base = Transform::Identity();
+  std::int64_t utime = 0;
+};
+
+/// The answer to any request; the map revision it led to where there is one.
+struct Answer {
+  std::string id;
+  std::string process;
+  bool ok = false;
+  std::string code;     ///< "OK" or a Code's name
+  std::string message;  ///< for a person
+  std::int64_t revision = 0;
+  std::int64_t count = 0;  ///< voxels, bytes or items concerned
+};
+
+/// The planner's word on one path request; `poses` is empty unless status is "OK".
+struct Path {
+  std::string id;
+  std::string robot;
+  std::string status;   ///< "OK" or a reason, see planner/README.md
+  std::string message;  ///< for a person
+  std::vector<Eigen::Vector3d> points;  ///< map frame, z on the floor of the band
+  double length = 0.0;
+  double least_clearance = 0.0;
+  std::int64_t map_revision = 0;
+  std::int64_t plan_number = 0;  ///< counts up with each replanning of one request
+  bool active = false;
+  std::int64_t utime = 0;
+};
+
+/// What is known of one agent; published by merge for people and headsets.
+struct AgentState {
+  std::string id;
+  std::string kind;
+  std::string frame_id;
+  int weight = 1;
+  bool aligned = false;
+  Transform T_map_agent = Transform::Identity();
+  std::int64_t known = 0;
+  std::int64_t occupied = 0;
+  std::int64_t revision = 0;
+  bool synced = false;  ///< all that its stream has announced has arrived
+};
+
+/// Ids, frames and map names: 1 to 40 of [A-Za-z0-9._-], starting with a letter or digit.
+/// Such a name is safe as a file name and inside a channel name.
+[[nodiscard]] bool is_name(std::string_view text);
+
+}  // namespace concord
