@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace concord {
+
+using Bytes = std::vector<std::uint8_t>;
+
+/// What a node sees of the network: named channels, a clock and timers. Everything runs in one thread.
+/// `LcmBus` is the real one; `LockstepBus` plays a log through nodes in one process on log time.
+class Bus {
+ public:
+  using Handler = std::function<void(const std::string& channel, std::span<const std::uint8_t> bytes)>;
+  using Task = std::function<void()>;
+
+  Bus() = default;
+  Bus(const Bus&) = delete;
+  Bus& operator=(const Bus&) = delete;
+  virtual ~Bus() = default;
+
+  /// Calls `handler` with each message on a channel whose whole name matches the regular expression.
+  virtual void subscribe(const std::string& channel_regex, Handler handler) = 0;
+  /// Never blocks on receivers. @pre channel has at most 63 characters.
+  virtual void publish(const std::string& channel, std::span<const std::uint8_t> bytes) = 0;
+  /// Calls `task` about every `period` microseconds, first after one period.
+  virtual void every(std::int64_t period, Task task) = 0;
+  /// Microseconds since 1970; in a replay the log's time.
+  [[nodiscard]] virtual std::int64_t now() const = 0;
+};
+
+}  // namespace concord

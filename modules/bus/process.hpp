@@ -1,0 +1,28 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "bus/bus.hpp"
+#include "bus/counters.hpp"
+#include "bus/site.hpp"
+
+namespace concord {
+
+/// What a node is given by its shell.
+struct NodeContext {
+  Bus& bus;
+  Counters& counters;
+  const Site& site;
+  std::string process;     ///< its name, for answers and status
+  std::int64_t boot_id;    ///< this start, microseconds since 1970
+};
+
+/// Runs a node as an LCM process: `--site FILE`, signals, a status message each second on out/status/<process>,
+/// until SIGINT or SIGTERM. `make` builds the node and returns it type-erased; it lives until the end.
+/// Returns the exit code: 0 after a signal, 2 for a configuration that cannot be used.
+[[nodiscard]] int run_process(const std::string& process, int argc, char** argv,
+                              const std::function<std::shared_ptr<void>(const NodeContext&)>& make);
+
+}  // namespace concord

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <stdexcept>
+#include <string>
+
+#include "core/compose.hpp"
+
+namespace concord {
+
+/// What the site file says of one agent; agents it does not name get `Site::unlisted`.
+struct AgentConfig {
+  std::string kind = "unknown";
+  int weight = 1;         ///< 1 to 1000
+  double radius = 0.3;    ///< metres; as a robot on the grid
+};
+
+/// The one YAML file of a site: a section per process, unknown keys are errors. Defaults stand here.
+struct Site {
+  std::string lcm_url = "udpm://239.255.76.67:7667?ttl=0";
+  bool beyond_host = false;  ///< must be true for a ttl above 0: LCM has no authentication
+  std::filesystem::path state = "state";
+  double resolution = 0.05;  ///< metres
+
+  std::map<std::string, AgentConfig> agents;
+  AgentConfig unlisted;
+
+  struct Stream {
+    double bytes_per_second = 5e6;
+  } stream;
+  struct Ingest {
+    std::int64_t max_agents = 64;
+    std::int64_t max_known_voxels = 400'000'000;  ///< per agent
+  } ingest;
+  struct Merge {
+    Policy policy = Policy::kMean;
+  } merge;
+  struct Planner {
+    double zmin = 0.1, zmax = 1.8;  ///< height band, map z, metres
+    double free_share = 0.5;        ///< of the band that must have been observed free
+  } planner;
+
+  [[nodiscard]] const AgentConfig& agent(const std::string& id) const {
+    const auto it = agents.find(id);
+    return it != agents.end() ? it->second : unlisted;
+  }
+};
+
+/// Start-up configuration that cannot be used; caught in `main`, printed as one line.
+class ConfigError : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// @throws ConfigError for a missing file, bad YAML, an unknown key or a value out of range; names file and line.
+[[nodiscard]] Site load_site(const std::filesystem::path& file);
+
+/// The effective values, as YAML: what the process logs at its start.
+[[nodiscard]] std::string to_yaml(const Site& site);
+
+}  // namespace concord
