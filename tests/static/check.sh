@@ -1,0 +1,80 @@
+#!/usr/bin/env bash
+# Rules of the house that a compiler does not know. `check.sh RULE`: exit 0 kept, 1 broken (each place is named), 77 skipped.
+set -uo pipefail
+cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.." || exit 2
+
+sources() { find "$@" -type f \( -name '*.cpp' -o -name '*.hpp' \) | LC_ALL=C sort; }
+
+# none WHAT: fails when standard input has a line, and shows it.
+none() {
+  local places; places=$(cat)
+  [ -z "$places" ] && return 0
+  printf '%s:\n%s\n\n' "$1" "$places"
+  return 1
+}
+
+# A shell talks to the outside: nodes, the process frame, programs. All else in a process's folder is its pure core.
+is_shell='(_node\.[ch]pp|/main\.cpp|^modules/(bus|cli|agent|store)/)'
+
+dependencies() {
+  local failed=0 process
+  sources modules planner | xargs grep -nE '#include <lcm/' | grep -v '^modules/bus/' |
+    none 'LCM outside modules/bus' || failed=1
+  sources modules planner | xargs grep -nE '#include <concord/.*_t\.hpp>' | grep -v '^modules/bus/' |
+    none 'generated message types outside the translators in modules/bus' || failed=1
+  sources modules planner | grep -vE "$is_shell" | xargs grep -nE '#include (<(spdlog|CLI|sqlite3)|"(bus|store)/)' |
+    none 'a core that logs, parses arguments, stores or talks' || failed=1
+  sources modules planner | grep -vE "$is_shell" | xargs grep -nE '(system|steady|high_resolution)_clock|gettimeofday|[^_.>]time\(' |
+    none 'a core that reads a clock' || failed=1
+  sources modules/core | xargs grep -nE '#include "' | grep -v '#include "core/' |
+    none 'modules/core knows only itself' || failed=1
+  sources modules/bus modules/store | xargs grep -nE '#include "' | grep -vE '#include "(core|bus|store)/' |
+    none 'modules/bus and modules/store know modules/core and themselves' || failed=1
+  for process in ingest align merge semantic planner; do
+    sources modules planner | grep -E "^(modules/)?$process/" | xargs -r grep -nE '#include "[a-z_]+/' |
+      grep -vE "#include \"($process|core|bus|store)/" |
+      none "$process includes another process" || failed=1
+  done
+  sources modules planner | grep '\.hpp$' | xargs grep -nE '#include <(pcl|ompl|boost/beast)/' |
+    none 'a header that is slow to compile, in a header' || failed=1
+  return "$failed"
+}
+
+file_length() {
+  { sources modules planner tests; find run lcmtypes modules tests -name '*.lcm' -o -name '*.sh' -o -name '*.java' -o -name run; } |
+    xargs wc -l | awk '$2 != "total" && $1 > 400 {print "  " $2 ": " $1}' | none 'files that are not read in one sitting'
+}
+
+# Every field says what it is, with unit and frame, in // comments on the line before: lcm-gen loses trailing ones.
+# A comment may speak for the fields that follow it directly.
+message_comments() {
+  local file
+  for file in lcmtypes/*.lcm; do
+    awk -v file="$file" '
+      /^[[:space:]]*$/ {commented = 0}
+      /^[[:space:]]*\/\// {commented = 1; next}
+      /^struct/ {if (!commented) print file ":" FNR ": " $0; commented = 0; next}
+      /^package|^[[:space:]]*const/ {next}
+      /;/ {if (!commented || /\/\//) print file ":" FNR ": " $0}' "$file"
+  done | none 'fields without a comment on the line before'
+}
+
+test_waits() {
+  sources tests | xargs grep -nE 'sleep_for|sleep_until|usleep\(|[^_a-z]sleep\(' | none 'tests wait for events, they do not sleep'
+}
+
+format() {
+  local file
+  case $(clang-format --version 2>/dev/null) in  # other versions break lines elsewhere
+    *'version 14.'*) ;;
+    *) echo 'clang-format 14 is not installed'; exit 77 ;;
+  esac
+  sources modules planner tests | while read -r file; do
+    clang-format --dry-run --Werror "$file" 2>/dev/null || echo "$file"
+  done | none 'files that clang-format would change'
+}
+
+case ${1:-} in
+  dependencies | file_length | message_comments | test_waits | format) "$1" ;;
+  *) echo 'check.sh dependencies | file_length | message_comments | test_waits | format'; exit 2 ;;
+esac
