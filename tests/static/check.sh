@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Rules of the house that a compiler does not know. `check.sh RULE`: exit 0 kept, 1 broken (each place is named), 77 skipped.
-set -uo pipefail
+set -u
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.." || exit 2
 
 sources() { find "$@" -type f \( -name '*.cpp' -o -name '*.hpp' \) | LC_ALL=C sort; }
@@ -18,24 +18,24 @@ is_shell='(_node\.[ch]pp|/main\.cpp|^modules/(bus|cli|agent|store)/)'
 
 dependencies() {
   local failed=0 process
-  sources modules planner | xargs grep -nE '#include <lcm/' | grep -v '^modules/bus/' |
+  sources modules planner | xargs -r grep -HnE '#include <lcm/' | grep -v '^modules/bus/' |
     none 'LCM outside modules/bus' || failed=1
-  sources modules planner | xargs grep -nE '#include <concord/.*_t\.hpp>' | grep -v '^modules/bus/' |
+  sources modules planner | xargs -r grep -HnE '#include <concord/.*_t\.hpp>' | grep -v '^modules/bus/' |
     none 'generated message types outside the translators in modules/bus' || failed=1
-  sources modules planner | grep -vE "$is_shell" | xargs grep -nE '#include (<(spdlog|CLI|sqlite3)|"(bus|store)/)' |
+  sources modules planner | grep -vE "$is_shell" | xargs -r grep -HnE '#include (<(spdlog|CLI|sqlite3)|"(bus|store)/)' |
     none 'a core that logs, parses arguments, stores or talks' || failed=1
-  sources modules planner | grep -vE "$is_shell" | xargs grep -nE '(system|steady|high_resolution)_clock|gettimeofday|[^_.>]time\(' |
+  sources modules planner | grep -vE "$is_shell" | xargs -r grep -HnE '(system|steady|high_resolution)_clock|gettimeofday|[^_.>]time\(' |
     none 'a core that reads a clock' || failed=1
-  sources modules/core | xargs grep -nE '#include "' | grep -v '#include "core/' |
+  sources modules/core | xargs -r grep -HnE '#include "' | grep -v '#include "core/' |
     none 'modules/core knows only itself' || failed=1
-  sources modules/bus modules/store | xargs grep -nE '#include "' | grep -vE '#include "(core|bus|store)/' |
+  sources modules/bus modules/store | xargs -r grep -HnE '#include "' | grep -vE '#include "(core|bus|store)/' |
     none 'modules/bus and modules/store know modules/core and themselves' || failed=1
   for process in ingest align merge semantic planner; do
-    sources modules planner | grep -E "^(modules/)?$process/" | xargs -r grep -nE '#include "[a-z_]+/' |
+    sources modules planner | grep -E "^(modules/)?$process/" | xargs -r grep -HnE '#include "[a-z_]+/' |
       grep -vE "#include \"($process|core|bus|store)/" |
       none "$process includes another process" || failed=1
   done
-  sources modules planner | grep '\.hpp$' | xargs grep -nE '#include <(pcl|ompl|boost/beast)/' |
+  sources modules planner | grep '\.hpp$' | xargs -r grep -HnE '#include <(pcl|ompl|boost/beast)/' |
     none 'a header that is slow to compile, in a header' || failed=1
   return "$failed"
 }
@@ -60,7 +60,7 @@ message_comments() {
 }
 
 test_waits() {
-  sources tests | xargs grep -nE 'sleep_for|sleep_until|usleep\(|[^_a-z]sleep\(' | none 'tests wait for events, they do not sleep'
+  sources tests | xargs -r grep -HnE 'sleep_for|sleep_until|usleep\(|[^_a-z]sleep\(' | none 'tests wait for events, they do not sleep'
 }
 
 format() {
