@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <functional>
 #include <map>
-#include <optional>
+#include <memory>
 #include <string>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include "bus/bus.hpp"
 #include "bus/counters.hpp"
@@ -22,6 +24,24 @@ struct StreamChannels {
   std::string bricks, digest, need;
 };
 
+/// Disjoint, merged intervals of versions, both ends included.
+class VersionSet {
+ public:
+  void add(std::int64_t first, std::int64_t last);
+  void remove(std::int64_t first, std::int64_t last);
+  void clear() { intervals_.clear(); }
+
+  [[nodiscard]] bool empty() const { return intervals_.empty(); }
+  [[nodiscard]] bool contains(std::int64_t first, std::int64_t last) const;
+  [[nodiscard]] std::int64_t highest() const { return empty() ? 0 : intervals_.rbegin()->second; }
+  [[nodiscard]] const std::map<std::int64_t, std::int64_t>& intervals() const { return intervals_; }
+  /// The parts of [1, last] that are not in the set.
+  [[nodiscard]] std::vector<std::pair<std::int64_t, std::int64_t>> missing(std::int64_t last) const;
+
+ private:
+  std::map<std::int64_t, std::int64_t> intervals_;  ///< first -> last
+};
+
 /// Keeps every receiver's copy of a BrickMap equal to the owner's, at a bounded rate.
 /// It holds no brick: it reads them from `map`, which must outlive it and may only change together with `touch`.
 class BrickSender {
@@ -30,31 +50,37 @@ class BrickSender {
     std::string stream;  ///< e.g. "in/robot1", "out/map"
     double resolution = 0.05;
     double bytes_per_second = 5e6;
-    std::int64_t boot_id = 0;  ///< must differ from that of every earlier start
+    std::int64_t boot_id = 0;  ///< microseconds of this start: greater than any earlier one
   };
 
   BrickSender(Bus& bus, Counters& counters, Config config, const BrickMap& map);
+  ~BrickSender() = default;
+  BrickSender(const BrickSender&) = delete;
+  BrickSender& operator=(const BrickSender&) = delete;
 
-  /// A new frame: everything sent so far is void. Called once before the first touch.
+  /// A new frame: everything sent so far is void; every brick in the map now is sent. Nothing is sent before the first.
   void begin(const std::string& frame_id);
-  /// The owner changed this brick (or emptied it).
+  /// The owner changed this brick (or emptied it). @pre begin was called.
   void touch(BrickIndex index);
-  /// The owner stops speaking of this stream altogether (agent removed).
+  /// The owner stops speaking of this content (agent removed); digests say so until the next `begin`.
   void end();
+  /// Sends what the pace allows now instead of at the next timer.
+  void send_now();
 
   [[nodiscard]] std::int64_t revision() const { return revision_; }
   [[nodiscard]] std::int64_t bytes_sent() const { return bytes_sent_; }
   /// Everything touched has been sent at least once.
-  [[nodiscard]] bool idle() const { return pending_.empty(); }
+  [[nodiscard]] bool idle() const { return pending_.empty() && repairs_.empty(); }
 
  private:
   struct Entry {
     std::int64_t version = 0;
-    std::uint64_t content = 0;  ///< its share of the digest; 0 when the brick is gone
+    std::uint64_t content = 0;  ///< its share of the digest
+    bool gone = true;
   };
 
-  void step();
-  void send_interval(std::int64_t first, std::int64_t last);
+  void renew_epoch();
+  void send_packet();
   void send_digest();
   void on_request(const BrickRequest& request);
 
@@ -63,18 +89,20 @@ class BrickSender {
   Config config_;
   StreamChannels channels_;
   const BrickMap& map_;
+  std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  ///< timers and subscriptions of the bus outlive this
 
+  bool begun_ = false;
   std::string frame_id_;
   std::int64_t revision_ = 0;
   std::int64_t brick_count_ = 0;
   std::uint64_t content_ = 0;
   std::unordered_map<BrickIndex, Entry, IndexHash> entries_;
-  std::map<std::int64_t, BrickIndex> by_version_;
-  std::map<std::int64_t, std::int64_t> pending_;  ///< disjoint intervals of versions to send, first -> last
-  std::int64_t repairs_due_ = 0;                  ///< requests are gathered until then
-  std::map<std::int64_t, std::int64_t> repairs_;
-  double budget_ = 0;  ///< bytes that may be sent now
-  std::int64_t last_step_ = 0;
+  std::map<std::int64_t, BrickIndex> live_;  ///< by version
+  VersionSet pending_;
+  VersionSet repairs_;            ///< asked for, gathered until repairs_due_
+  std::int64_t repairs_due_ = 0;
+  double budget_ = 0;             ///< bytes that may be sent now
+  std::int64_t last_step_;
   std::int64_t next_digest_ = 0;
   std::int64_t bytes_sent_ = 0;
 };
@@ -84,27 +112,31 @@ class BrickReceiver {
  public:
   struct Config {
     std::string stream;
-    double resolution = 0.05;               ///< packets of another one are refused
-    std::int64_t max_bricks = 4'000'000;    ///< beyond it packets are refused and counted
-    std::uint64_t seed = 1;                 ///< of the request back-off
-    bool may_request = true;                ///< false: only listen (a log reader)
+    double resolution = 0.05;             ///< packets of another one are refused
+    std::int64_t max_bricks = 4'000'000;  ///< beyond it packets are refused and counted
   };
   struct Events {
     /// A new frame (or the first): all bricks of the one before are void.
     std::function<void(const std::string& frame_id)> on_frame;
-    /// A brick is now this; empty: gone.
+    /// A brick is now this; empty: gone. Called only when the content differs.
     std::function<void(BrickIndex, Brick)> on_brick;
+    /// The sender said that the stream has ended.
+    std::function<void()> on_end;
   };
 
+  /// Asks for repairs on its own; the messages come through on_packet and on_digest, from a subscription that the
+  /// owner has (one regex may serve many agents).
   BrickReceiver(Bus& bus, Counters& counters, Config config, Events events);
+  ~BrickReceiver() = default;
+  BrickReceiver(const BrickReceiver&) = delete;
+  BrickReceiver& operator=(const BrickReceiver&) = delete;
 
-  /// Feeds a message from a channel whose subscription the caller owns (one regex for all agents).
   void on_packet(const BrickPacket& packet);
   void on_digest(const BrickDigest& digest);
 
   /// All versions up to the last announced revision have arrived.
   [[nodiscard]] bool synced() const;
-  [[nodiscard]] bool heard() const { return boot_id_.has_value(); }
+  [[nodiscard]] bool heard() const { return boot_id_ != 0; }
   [[nodiscard]] const std::string& frame_id() const { return frame_id_; }
   [[nodiscard]] std::int64_t revision() const { return announced_; }
   /// Versions announced but not received.
@@ -112,21 +144,27 @@ class BrickReceiver {
 
   /// Takes what is already known of this frame, e.g. read back from disk: a digest that matches is in sync at once.
   void adopt(const std::string& frame_id, const BrickMap& map);
-  /// Refuses everything more of the present frame; the next frame begins anew.
+  /// Refuses everything more of the present frame; another frame begins anew.
   void close_frame();
 
  private:
   struct Held {
-    std::int64_t version = 0;
+    std::int64_t version = 0;  ///< 0: from before this epoch
     std::uint64_t content = 0;
-    bool confirmed = false;  ///< seen under the present boot
+    bool gone = true;
+  };
+  struct Arrived {
+    BrickIndex index;
+    std::int64_t version;
+    Brick brick;
   };
 
   bool enter(std::int64_t boot_id, const std::string& frame_id, double resolution);
+  [[nodiscard]] Result<std::vector<Arrived>> unpack(const BrickPacket& packet) const;
+  void hold(Arrived arrived);
   void cover(std::int64_t first, std::int64_t last);
-  void hold(BrickIndex index, std::int64_t version, Brick brick);
-  void finish_boot();
-  void step();
+  void drop_unconfirmed();
+  void compare(const BrickDigest& digest);
   void request_missing();
 
   Bus& bus_;
@@ -134,19 +172,21 @@ class BrickReceiver {
   Config config_;
   StreamChannels channels_;
   Events events_;
+  std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  ///< timers of the bus outlive this
 
-  std::optional<std::int64_t> boot_id_;
+  std::int64_t boot_id_ = 0;
   std::string frame_id_;
+  std::string closed_frame_;
   std::int64_t announced_ = 0;
-  std::map<std::int64_t, std::int64_t> covered_;  ///< disjoint, merged intervals
+  VersionSet covered_;
   std::unordered_map<BrickIndex, Held, IndexHash> held_;
   std::int64_t brick_count_ = 0;
   std::uint64_t content_ = 0;
-  bool unconfirmed_ = false;  ///< some held bricks are from an earlier boot
-  bool closed_ = false;
+  bool unconfirmed_ = false;  ///< some held bricks are from an earlier epoch
   std::int64_t last_heard_ = 0;
-  std::int64_t next_request_ = 0;
-  int rounds_ = 0;
+  std::int64_t last_progress_ = 0;
+  std::int64_t asked_up_to_ = 0;
+  std::int64_t ask_at_ = 0;
   std::uint64_t random_;
 };
 

@@ -4,11 +4,11 @@
 #include <functional>
 #include <span>
 #include <string>
-#include <vector>
+#include "core/byte_stream.hpp"
 
 namespace concord {
 
-using Bytes = std::vector<std::uint8_t>;
+
 
 /// What a node sees of the network: named channels, a clock and timers. Everything runs in one thread.
 /// `LcmBus` is the real one; `LockstepBus` plays a log through nodes in one process on log time.

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -124,6 +125,26 @@ using Decoded = tl::expected<T, BadMessage>;
 /// Wire bytes to a checked value: everything core/requests.hpp promises holds. Defined for each value type above.
 template <class T>
 [[nodiscard]] Decoded<T> decode(std::span<const std::uint8_t> bytes);
+
+template <> Decoded<BrickPacket> decode(std::span<const std::uint8_t> bytes);
+template <> Decoded<BrickDigest> decode(std::span<const std::uint8_t> bytes);
+template <> Decoded<BrickRequest> decode(std::span<const std::uint8_t> bytes);
+template <> Decoded<OctomapMessage> decode(std::span<const std::uint8_t> bytes);
+template <> Decoded<CloudMessage> decode(std::span<const std::uint8_t> bytes);
+/// The agent's id stands in the channel, not in the message: the subscriber fills it in.
+template <> Decoded<AgentPose> decode(std::span<const std::uint8_t> bytes);
+template <> Decoded<MapPose> decode(std::span<const std::uint8_t> bytes);
+template <> Decoded<TransformRequest> decode(std::span<const std::uint8_t> bytes);
+template <> Decoded<AgentRequest> decode(std::span<const std::uint8_t> bytes);
+template <> Decoded<DownsampleRequest> decode(std::span<const std::uint8_t> bytes);
+template <> Decoded<Downsampled> decode(std::span<const std::uint8_t> bytes);
+template <> Decoded<MapRequest> decode(std::span<const std::uint8_t> bytes);
+template <> Decoded<MapList> decode(std::span<const std::uint8_t> bytes);
+template <> Decoded<PathRequest> decode(std::span<const std::uint8_t> bytes);
+template <> Decoded<Path> decode(std::span<const std::uint8_t> bytes);
+template <> Decoded<Answer> decode(std::span<const std::uint8_t> bytes);
+template <> Decoded<AgentList> decode(std::span<const std::uint8_t> bytes);
+template <> Decoded<ProcessStatus> decode(std::span<const std::uint8_t> bytes);
 
 /// An edit's indices only mean something at the map's resolution, which the receiver knows.
 [[nodiscard]] Decoded<EditRequest> decode_edit(std::span<const std::uint8_t> bytes, double resolution);

@@ -8,6 +8,10 @@
 #include "bus/counters.hpp"
 #include "bus/site.hpp"
 
+namespace CLI {
+class App;
+}
+
 namespace concord {
 
 /// What a node is given by its shell.
@@ -21,8 +25,10 @@ struct NodeContext {
 
 /// Runs a node as an LCM process: `--site FILE`, signals, a status message each second on out/status/<process>,
 /// until SIGINT or SIGTERM. `make` builds the node and returns it type-erased; it lives until the end.
+/// `add_options` may add options of the process's own that write into the site, over the file's values.
 /// Returns the exit code: 0 after a signal, 2 for a configuration that cannot be used.
 [[nodiscard]] int run_process(const std::string& process, int argc, char** argv,
-                              const std::function<std::shared_ptr<void>(const NodeContext&)>& make);
+                              const std::function<std::shared_ptr<void>(const NodeContext&)>& make,
+                              const std::function<void(CLI::App&, Site&)>& add_options = {});
 
 }  // namespace concord

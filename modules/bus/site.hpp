@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/compose.hpp"
+#include "core/policy.hpp"
 
 namespace concord {
 

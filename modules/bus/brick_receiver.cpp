@@ -1,0 +1,240 @@
+#include <algorithm>
+#include <cmath>
+
+#include "bus/brick_stream.hpp"
+#include "core/brick_codec.hpp"
+
+namespace concord {
+namespace {
+
+constexpr std::int64_t kStep = 10'000;
+constexpr std::int64_t kQuiet = 150'000;       ///< nothing came for so long: what was to come is lost
+constexpr std::int64_t kMaxBackOff = 30'000;
+constexpr std::int64_t kBootSilence = 3'000'000;
+constexpr std::size_t kMaxIntervalsHeld = 65'536;
+constexpr std::size_t kMaxIntervalsAsked = 64;
+
+std::uint64_t next_random(std::uint64_t& state) {
+  state += 0x9E3779B97F4A7C15ULL;
+  std::uint64_t z = (state ^ (state >> 30)) * 0xBF58476D1CE4E5B9ULL;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
+  return z ^ (z >> 31);
+}
+
+}  // namespace
+
+BrickReceiver::BrickReceiver(Bus& bus, Counters& counters, Config config, Events events)
+    : bus_(bus),
+      counters_(counters),
+      config_(std::move(config)),
+      channels_(config_.stream),
+      events_(std::move(events)),
+      random_(static_cast<std::uint64_t>(bus.now()) ^ std::hash<std::string>{}(config_.stream)) {
+  bus_.every(kStep, [this, alive = std::weak_ptr(alive_)] {
+    if (!alive.expired()) request_missing();
+  });
+}
+
+bool BrickReceiver::synced() const {
+  return heard() && !unconfirmed_ && (announced_ == 0 || covered_.contains(1, announced_));
+}
+
+std::int64_t BrickReceiver::missing() const {
+  std::int64_t sum = 0;
+  for (const auto& [first, last] : covered_.missing(announced_)) sum += last - first + 1;
+  return sum;
+}
+
+void BrickReceiver::adopt(const std::string& frame_id, const BrickMap& map) {
+  frame_id_ = frame_id;
+  map.for_each_brick([&](BrickIndex index, const Brick& brick) {
+    held_[index] = {0, content_hash(index, brick), false};
+    content_ += held_[index].content;
+    ++brick_count_;
+  });
+  unconfirmed_ = brick_count_ > 0;
+}
+
+void BrickReceiver::close_frame() {
+  closed_frame_ = frame_id_;
+  held_.clear();
+  content_ = 0;
+  brick_count_ = 0;
+  unconfirmed_ = false;
+}
+
+/// Whether what is said under this epoch and frame counts; moves on to a newer epoch.
+bool BrickReceiver::enter(std::int64_t boot_id, const std::string& frame_id, double resolution) {
+  const std::int64_t time = bus_.now();
+  if (std::abs(resolution - config_.resolution) > 1e-9) {
+    counters_.refused(config_.stream, {Code::kBadResolution, "stream has " + std::to_string(resolution) + " m, the site " +
+                                                                 std::to_string(config_.resolution) + " m"});
+    return false;
+  }
+  if (boot_id == boot_id_) {
+    if (frame_id != frame_id_) {
+      counters_.refused(config_.stream, {Code::kBadFrame, "frame changed without a new epoch"});
+      return false;
+    }
+    last_heard_ = time;
+    return frame_id != closed_frame_;
+  }
+  if (boot_id < boot_id_ && time - last_heard_ < kBootSilence) {
+    counters_.refused(config_.stream, {Code::kStale, "sent by an earlier start of the sender"});
+    return false;
+  }
+  boot_id_ = boot_id;
+  last_heard_ = time;
+  announced_ = 0;
+  asked_up_to_ = 0;
+  ask_at_ = 0;
+  covered_.clear();
+  if (frame_id == closed_frame_) {
+    frame_id_ = frame_id;
+    return false;
+  }
+  if (frame_id == frame_id_) {
+    for (auto& [index, held] : held_) held.version = 0;
+    unconfirmed_ = !held_.empty();
+    return true;
+  }
+  held_.clear();
+  content_ = 0;
+  brick_count_ = 0;
+  unconfirmed_ = false;
+  frame_id_ = frame_id;
+  if (!frame_id.empty()) {
+    events_.on_frame(frame_id);
+  } else if (events_.on_end) {
+    events_.on_end();
+  }
+  return true;
+}
+
+Result<std::vector<BrickReceiver::Arrived>> BrickReceiver::unpack(const BrickPacket& packet) const {
+  std::vector<Arrived> bricks;
+  ByteSpan rest = packet.data;
+  const auto malformed = [] { return refuse(Code::kMalformed, "a brick packet does not hold the bricks it counts"); };
+  std::int64_t x = 0, y = 0, z = 0;
+  for (std::int32_t i = 0; i < packet.count; ++i) {
+    const auto offset = read_varint(rest);
+    const auto dx = read_varint(rest), dy = read_varint(rest), dz = read_varint(rest);
+    if (!offset || !dx || !dy || !dz) return malformed();
+    if (*offset > static_cast<std::uint64_t>(packet.last_version - packet.first_version)) return malformed();
+    const auto moved = [](std::int64_t from, std::uint64_t by) {  // unsigned: hostile sums must not overflow
+      return static_cast<std::int64_t>(static_cast<std::uint64_t>(from) + static_cast<std::uint64_t>(unzigzag(by)));
+    };
+    x = moved(x, *dx);
+    y = moved(y, *dy);
+    z = moved(z, *dz);
+    const auto small = [](std::int64_t c) { return std::abs(static_cast<double>(c)) < kMaxVoxel; };
+    if (!small(x) || !small(y) || !small(z)) return refuse(Code::kOutOfBounds, "a brick lies beyond the map's bounds");
+    const BrickIndex index{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y), static_cast<std::int32_t>(z)};
+    if (!in_bounds(index)) return refuse(Code::kOutOfBounds, "a brick lies beyond the map's bounds");
+    auto brick = read_brick(rest);
+    if (!brick) return tl::unexpected(brick.error());
+    bricks.push_back({index, packet.first_version + static_cast<std::int64_t>(*offset), std::move(*brick)});
+  }
+  if (!rest.empty()) return malformed();
+  return bricks;
+}
+
+void BrickReceiver::on_packet(const BrickPacket& packet) {
+  auto bricks = unpack(packet);
+  if (!bricks) return counters_.refused(channels_.bricks, bricks.error());
+  if (!enter(packet.boot_id, packet.frame_id, packet.resolution)) return;
+  if (static_cast<std::int64_t>(held_.size() + bricks->size()) > config_.max_bricks ||
+      covered_.intervals().size() >= kMaxIntervalsHeld) {
+    return counters_.refused(channels_.bricks, {Code::kTooLarge, "stream has more bricks or holes than are kept"});
+  }
+  for (Arrived& arrived : *bricks) hold(std::move(arrived));
+  cover(packet.first_version, packet.last_version);
+}
+
+void BrickReceiver::hold(Arrived arrived) {
+  Held& held = held_[arrived.index];
+  if (arrived.version <= held.version) return;
+  const bool gone = arrived.brick.empty();
+  const std::uint64_t content = gone ? 0 : content_hash(arrived.index, arrived.brick);
+  const bool changed = gone != held.gone || content != held.content;
+  content_ += content - held.content;
+  brick_count_ += (gone ? 0 : 1) - (held.gone ? 0 : 1);
+  held = {arrived.version, content, gone};
+  if (changed) events_.on_brick(arrived.index, std::move(arrived.brick));
+}
+
+void BrickReceiver::cover(std::int64_t first, std::int64_t last) {
+  if (first <= asked_up_to_ && !covered_.contains(first, last)) last_progress_ = bus_.now();
+  covered_.add(first, last);
+  announced_ = std::max(announced_, last);
+  if (unconfirmed_ && covered_.contains(1, announced_)) drop_unconfirmed();
+}
+
+/// All that the present epoch has was sent again: what it did not speak of is no longer there.
+void BrickReceiver::drop_unconfirmed() {
+  unconfirmed_ = false;
+  std::vector<BrickIndex> dropped;
+  for (const auto& [index, held] : held_) {
+    if (held.version == 0) dropped.push_back(index);
+  }
+  std::sort(dropped.begin(), dropped.end());
+  for (const BrickIndex index : dropped) {
+    const auto it = held_.find(index);
+    const Held held = it->second;
+    held_.erase(it);
+    if (held.gone) continue;
+    content_ -= held.content;
+    --brick_count_;
+    events_.on_brick(index, Brick{});
+  }
+}
+
+void BrickReceiver::on_digest(const BrickDigest& digest) {
+  if (!enter(digest.boot_id, digest.frame_id, digest.resolution)) return;
+  announced_ = std::max(announced_, digest.revision);
+  if (digest.revision == announced_) compare(digest);
+}
+
+void BrickReceiver::compare(const BrickDigest& digest) {
+  const bool equal = digest.brick_count == brick_count_ && digest.content == content_;
+  if (unconfirmed_ && equal) {
+    // The sender began anew with what is held here: nothing needs to be sent.
+    unconfirmed_ = false;
+    if (digest.revision > 0) covered_.add(1, digest.revision);
+    return;
+  }
+  if (unconfirmed_ && digest.revision == 0) return drop_unconfirmed();
+  if (!equal && !unconfirmed_ && digest.revision > 0 && covered_.contains(1, digest.revision)) {
+    counters_.add("stream_mismatch." + config_.stream);
+    covered_.clear();
+    for (auto& [index, held] : held_) held.version = 0;
+    unconfirmed_ = true;
+  }
+}
+
+void BrickReceiver::request_missing() {
+  if (!heard() || frame_id_ == closed_frame_ || announced_ == 0) return;
+  if (covered_.contains(1, announced_)) {
+    ask_at_ = 0;
+    return;
+  }
+  const std::int64_t time = bus_.now();
+  auto holes = covered_.missing(announced_);
+  const bool quiet = time - last_heard_ > kQuiet;
+  const bool awaiting = asked_up_to_ > 0 && time - last_progress_ < kQuiet;
+  if (!quiet && holes.back().second == announced_) holes.pop_back();  // the tail may still be on its way
+  if (holes.empty() || awaiting) return;
+  if (ask_at_ == 0) {
+    ask_at_ = time + static_cast<std::int64_t>(next_random(random_) % kMaxBackOff);
+    return;
+  }
+  if (time < ask_at_) return;
+  if (holes.size() > kMaxIntervalsAsked) holes.resize(kMaxIntervalsAsked);
+  asked_up_to_ = holes.back().second;
+  last_progress_ = time;
+  ask_at_ = 0;
+  counters_.add("requests." + config_.stream);
+  bus_.publish(channels_.need, encode(BrickRequest{boot_id_, holes}, time));
+}
+
+}  // namespace concord

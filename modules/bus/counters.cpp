@@ -1,0 +1,28 @@
+#include "bus/counters.hpp"
+
+#include <bit>
+
+#include <spdlog/spdlog.h>
+
+namespace concord {
+
+void Counters::refused(const std::string& what, const Error& error) {
+  std::int64_t& count = slot("refused." + what + "." + name(error.code));
+  ++count;
+  if (std::has_single_bit(static_cast<std::uint64_t>(count))) {
+    spdlog::warn("refused on {}: {} ({}, {} times)", what, error.message, name(error.code), count);
+  }
+}
+
+std::int64_t Counters::get(const std::string& name) const {
+  const auto it = values_.find(name);
+  return it != values_.end() ? it->second : 0;
+}
+
+std::int64_t& Counters::slot(const std::string& name) {
+  const auto it = values_.find(name);
+  if (it != values_.end()) return it->second;
+  return values_[values_.size() < kMaxNames ? name : "other"];
+}
+
+}  // namespace concord

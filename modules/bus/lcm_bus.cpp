@@ -1,0 +1,99 @@
+#include "bus/lcm_bus.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <chrono>
+#include <fstream>
+
+#include <spdlog/spdlog.h>
+
+#include "bus/site.hpp"
+
+namespace concord {
+namespace {
+
+/// Enough for a second of bricks at the fastest pace seen without loss; bounded, so that a stalled process
+/// drops (and asks again) instead of growing.
+constexpr int kQueuedMessages = 16'384;
+constexpr int kReceiveBuffer = 4 << 20;
+
+/// LCM takes the socket buffer from the url; the default loses most of a burst.
+std::string with_receive_buffer(const std::string& url) {
+  if (url.rfind("udpm", 0) != 0 || url.find("recv_buf_size") != std::string::npos) return url;
+  return url + (url.find('?') == std::string::npos ? "?" : "&") + "recv_buf_size=" + std::to_string(kReceiveBuffer);
+}
+
+void warn_about_small_buffers(const std::string& url) {
+  if (url.rfind("udpm", 0) != 0) return;
+  long allowed = 0;
+  std::ifstream("/proc/sys/net/core/rmem_max") >> allowed;
+  if (allowed > 0 && allowed < kReceiveBuffer) {
+    spdlog::warn("net.core.rmem_max is {}: whole octomaps over {} kB may not arrive; run: sysctl -w net.core.rmem_max={}",
+                 allowed, allowed / 1000, kReceiveBuffer);
+  }
+}
+
+}  // namespace
+
+LcmBus::LcmBus(const std::string& url, Counters& counters) : lcm_(with_receive_buffer(url)), counters_(counters) {
+  if (!lcm_.good()) {
+    throw ConfigError("LCM cannot join " + url + "; is there a multicast route? (ip route add 224.0.0.0/4 dev lo)");
+  }
+  warn_about_small_buffers(url);
+}
+
+LcmBus::~LcmBus() = default;
+
+void LcmBus::subscribe(const std::string& channel_regex, Handler handler) {
+  Subscription& subscription = subscriptions_.emplace_back(Subscription{this, std::move(handler)});
+  lcm::Subscription* raw = lcm_.subscribe(channel_regex, &Subscription::receive, &subscription);
+  raw->setQueueCapacity(kQueuedMessages);
+}
+
+void LcmBus::Subscription::receive(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
+  const std::span bytes(static_cast<const std::uint8_t*>(buffer->data), buffer->data_size);
+  bus->guarded(channel, [&] { handler(channel, bytes); });
+}
+
+void LcmBus::publish(const std::string& channel, std::span<const std::uint8_t> bytes) {
+  assert(channel.size() <= LCM_MAX_CHANNEL_NAME_LENGTH);
+  if (lcm_.publish(channel, bytes.data(), static_cast<unsigned>(bytes.size())) != 0) counters_.add("publish_failed");
+}
+
+void LcmBus::every(std::int64_t period, Task task) { timers_.push_back({period, now() + period, std::move(task)}); }
+
+std::int64_t LcmBus::now() const {
+  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+void LcmBus::spin_once(int timeout_ms) {
+  std::int64_t wait = std::int64_t{timeout_ms} * 1000;
+  for (const Timer& timer : timers_) wait = std::min(wait, timer.due - now());
+  wait = std::clamp<std::int64_t>(wait, 0, std::int64_t{timeout_ms} * 1000);
+  // Timers must run under load too: at most a few milliseconds of messages between them.
+  const std::int64_t until = now() + wait + 5000;
+  int timeout = static_cast<int>((wait + 999) / 1000);
+  while (lcm_.handleTimeout(timeout) > 0 && now() < until) timeout = 0;
+  run_due_timers();
+}
+
+void LcmBus::run_due_timers() {
+  for (Timer& timer : timers_) {
+    const std::int64_t time = now();
+    if (time < timer.due) continue;
+    timer.due = std::max(timer.due + timer.period, time);
+    guarded("timer", timer.task);
+  }
+}
+
+/// An exception that left a handler would break LCM's next handle().
+void LcmBus::guarded(const std::string& what, const Task& task) {
+  try {
+    task();
+  } catch (const std::exception& e) {
+    counters_.add("exceptions");
+    spdlog::error("exception on {}: {}", what, e.what());
+  }
+}
+
+}  // namespace concord

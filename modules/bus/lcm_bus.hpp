@@ -1,0 +1,50 @@
+#pragma once
+
+#include <list>
+#include <string>
+
+#include <lcm/lcm-cpp.hpp>
+
+#include "bus/bus.hpp"
+#include "bus/counters.hpp"
+
+namespace concord {
+
+/// The bus over LCM. One thread: everything happens inside `spin_once`.
+class LcmBus final : public Bus {
+ public:
+  /// `url` as LCM takes it, e.g. "udpm://239.255.76.67:7667?ttl=0" or "memq://".
+  /// @throws ConfigError when LCM cannot join, with the usual cause.
+  LcmBus(const std::string& url, Counters& counters);
+  ~LcmBus() override;
+
+  void subscribe(const std::string& channel_regex, Handler handler) override;
+  void publish(const std::string& channel, std::span<const std::uint8_t> bytes) override;
+  void every(std::int64_t period, Task task) override;
+  [[nodiscard]] std::int64_t now() const override;
+
+  /// Waits up to `timeout_ms` (less when a timer is due) for messages, handles all that are there, runs due timers.
+  void spin_once(int timeout_ms);
+
+ private:
+  struct Subscription {
+    LcmBus* bus;
+    Handler handler;
+    void receive(const lcm::ReceiveBuffer* buffer, const std::string& channel);
+  };
+  struct Timer {
+    std::int64_t period;
+    std::int64_t due;
+    Task task;
+  };
+
+  void run_due_timers();
+  void guarded(const std::string& what, const Task& task);
+
+  lcm::LCM lcm_;
+  Counters& counters_;
+  std::list<Subscription> subscriptions_;
+  std::list<Timer> timers_;
+};
+
+}  // namespace concord

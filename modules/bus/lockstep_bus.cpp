@@ -1,0 +1,52 @@
+#include "bus/lockstep_bus.hpp"
+
+#include <algorithm>
+
+namespace concord {
+
+void LockstepBus::subscribe(const std::string& channel_regex, Handler handler) {
+  subscriptions_.push_back({std::regex(channel_regex), std::move(handler)});
+  by_channel_.clear();
+}
+
+void LockstepBus::publish(const std::string& channel, std::span<const std::uint8_t> bytes) {
+  queue_.push_back({channel, {bytes.begin(), bytes.end()}});
+}
+
+void LockstepBus::every(std::int64_t period, Task task) { timers_.push_back({period, now_ + period, std::move(task)}); }
+
+const std::vector<LockstepBus::Subscription*>& LockstepBus::subscribers(const std::string& channel) {
+  const auto it = by_channel_.find(channel);
+  if (it != by_channel_.end()) return it->second;
+  std::vector<Subscription*>& found = by_channel_[channel];
+  for (Subscription& subscription : subscriptions_) {
+    if (std::regex_match(channel, subscription.pattern)) found.push_back(&subscription);
+  }
+  return found;
+}
+
+void LockstepBus::deliver() {
+  while (!queue_.empty()) {
+    const Message message = std::move(queue_.front());
+    queue_.pop_front();
+    // By value: a handler may subscribe, which forgets the list.
+    const std::vector<Subscription*> receivers = subscribers(message.channel);
+    for (Subscription* receiver : receivers) receiver->handler(message.channel, message.bytes);
+  }
+}
+
+void LockstepBus::advance_to(std::int64_t utime) {
+  deliver();
+  while (true) {
+    const auto next = std::min_element(timers_.begin(), timers_.end(),
+                                       [](const Timer& a, const Timer& b) { return a.due < b.due; });
+    if (next == timers_.end() || next->due > utime) break;
+    now_ = std::max(now_, next->due);
+    next->due += next->period;
+    next->task();
+    deliver();
+  }
+  now_ = std::max(now_, utime);
+}
+
+}  // namespace concord

@@ -1,0 +1,77 @@
+#include "bus/process.hpp"
+
+#include <atomic>
+#include <csignal>
+
+#include <CLI/CLI.hpp>
+#include <spdlog/spdlog.h>
+
+#include "bus/lcm_bus.hpp"
+#include "bus/messages.hpp"
+
+namespace concord {
+namespace {
+
+std::atomic<bool> stop_requested = false;
+static_assert(std::atomic<bool>::is_always_lock_free, "it is set in a signal handler");
+
+void stop_on_signals() {
+  struct sigaction action = {};
+  action.sa_handler = [](int) { stop_requested = true; };
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
+void publish_status_each_second(Bus& bus, const Counters& counters, const std::string& process, std::int64_t boot_id) {
+  bus.every(1'000'000, [&bus, &counters, process, boot_id] {
+    bus.publish("out/status/" + process, encode(ProcessStatus{bus.now(), process, boot_id, counters.all()}));
+  });
+}
+
+void serve(const std::string& process, const Site& site,
+           const std::function<std::shared_ptr<void>(const NodeContext&)>& make) {
+  Counters counters;
+  LcmBus bus(site.lcm_url, counters);
+  const std::int64_t boot_id = bus.now();
+  publish_status_each_second(bus, counters, process, boot_id);
+  const std::shared_ptr<void> node = make({bus, counters, site, process, boot_id});
+  spdlog::info("serving on {}", site.lcm_url);
+  while (!stop_requested) bus.spin_once(10);
+  spdlog::info("stopping");
+}
+
+}  // namespace
+
+int run_process(const std::string& process, int argc, char** argv,
+                const std::function<std::shared_ptr<void>(const NodeContext&)>& make,
+                const std::function<void(CLI::App&, Site&)>& add_options) {
+  spdlog::set_pattern("%H:%M:%S.%e " + process + " %^%l%$ %v");
+  CLI::App app("Concord's " + process + " process");
+  std::string site_file;
+  app.add_option("--site", site_file, "the site's YAML file; defaults hold where it is silent");
+  Site overrides;
+  if (add_options) add_options(app, overrides);
+  try {
+    app.parse(argc, argv);
+    Site site = site_file.empty() ? Site{} : load_site(site_file);
+    if (add_options) {
+      // The options write into the site: parse again on top of the file's values.
+      CLI::App again;
+      again.add_option("--site", site_file);
+      add_options(again, site);
+      again.parse(argc, argv);
+    }
+    spdlog::info("effective configuration:\n{}", to_yaml(site));
+    stop_on_signals();
+    serve(process, site, make);
+    return 0;
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  } catch (const std::exception& e) {
+    spdlog::error("{}", e.what());
+    return 2;
+  }
+}
+
+}  // namespace concord

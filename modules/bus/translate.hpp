@@ -1,0 +1,80 @@
+#pragma once
+
+// Private to the translators (messages_*.cpp): what they share.
+
+#include <cstring>
+#include <string>
+
+#include <concord/transform_t.hpp>
+
+#include "bus/messages.hpp"
+#include "bus/wire_layout.hpp"
+#include "core/transform.hpp"
+
+namespace concord::wire {
+
+inline constexpr std::int64_t kIdLength = 80;        ///< request ids are any text up to this
+inline constexpr std::int64_t kNameLength = 40;      ///< see is_name
+inline constexpr std::int64_t kMessageLength = 400;  ///< texts for people
+inline constexpr std::int64_t kTransformBytes = 56;
+
+template <class Lcm>
+[[nodiscard]] Bytes to_bytes(const Lcm& message) {
+  Bytes bytes(static_cast<std::size_t>(message.getEncodedSize()));
+  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  return bytes;
+}
+
+/// Decodes after the layout has been checked, so that the generated code only sees lengths that hold.
+template <class Lcm>
+[[nodiscard]] Result<Lcm> from_bytes(std::span<const std::uint8_t> bytes, std::span<const WireField> layout) {
+  std::uint64_t fingerprint = 0;
+  for (std::size_t i = 0; i < 8 && i < bytes.size(); ++i) fingerprint = fingerprint << 8 | bytes[i];
+  if (bytes.size() < 8 || static_cast<std::int64_t>(fingerprint) != Lcm::getHash()) {
+    return refuse(Code::kMalformed, std::string("not a ") + Lcm::getTypeName() + "; is the sender of this release?");
+  }
+  switch (fits(bytes, layout)) {
+    case WireFit::kFits: break;
+    case WireFit::kTooLarge: return refuse(Code::kTooLarge, std::string(Lcm::getTypeName()) + " is over a limit, see its .lcm file");
+    case WireFit::kMalformed: return refuse(Code::kMalformed, std::string("bytes end early or late for a ") + Lcm::getTypeName());
+  }
+  Lcm message;
+  if (message.decode(bytes.data(), 0, static_cast<int>(bytes.size())) != static_cast<int>(bytes.size())) {
+    return refuse(Code::kMalformed, std::string("cannot decode a ") + Lcm::getTypeName());
+  }
+  return message;
+}
+
+[[nodiscard]] inline tl::unexpected<BadMessage> bad(Error error, std::string id = {}) {
+  return tl::unexpected<BadMessage>(BadMessage{std::move(error), std::move(id)});
+}
+[[nodiscard]] inline tl::unexpected<BadMessage> bad(Code code, std::string message, std::string id = {}) {
+  return bad(Error{code, std::move(message)}, std::move(id));
+}
+
+/// Request ids come back to their asker in answers and stand in logs: printable, not empty.
+[[nodiscard]] inline bool is_request_id(const std::string& id) {
+  if (id.empty()) return false;
+  for (const char c : id) {
+    if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) == 0x7F) return false;
+  }
+  return true;
+}
+
+[[nodiscard]] inline transform_t to_wire(const Transform& T) {
+  transform_t out;
+  const Eigen::Quaterniond q(T.linear());
+  for (int i = 0; i < 3; ++i) out.position[i] = T.translation()[i];
+  out.quaternion[0] = q.x();
+  out.quaternion[1] = q.y();
+  out.quaternion[2] = q.z();
+  out.quaternion[3] = q.w();
+  return out;
+}
+
+[[nodiscard]] inline Result<Transform> from_wire(const transform_t& in) {
+  return make_transform({in.position[0], in.position[1], in.position[2]},
+                        {in.quaternion[0], in.quaternion[1], in.quaternion[2], in.quaternion[3]});
+}
+
+}  // namespace concord::wire

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace concord {
+
+/// The shape of a generated LCM type, to be walked before its decoder is called: the generated code takes
+/// memory for whatever counts it finds and has undefined behaviour on a negative string length.
+struct WireField {
+  enum class Kind {
+    kFixed,   ///< `bytes` bytes
+    kText,    ///< int32 length with terminating zero, at most `bytes` characters
+    kCount,   ///< int32, 0 to `bytes`; what the following arrays repeat
+    kArray,   ///< the last count times `bytes` bytes
+    kTexts,   ///< the last count times a text of at most `bytes` characters
+    kRecords  ///< the last count times `record`
+  };
+  Kind kind;
+  std::int64_t bytes;
+  std::span<const WireField> record = {};
+};
+
+[[nodiscard]] constexpr WireField fixed(std::int64_t bytes) { return {WireField::Kind::kFixed, bytes}; }
+[[nodiscard]] constexpr WireField text(std::int64_t most) { return {WireField::Kind::kText, most}; }
+[[nodiscard]] constexpr WireField count(std::int64_t most) { return {WireField::Kind::kCount, most}; }
+[[nodiscard]] constexpr WireField array(std::int64_t bytes_each) { return {WireField::Kind::kArray, bytes_each}; }
+[[nodiscard]] constexpr WireField texts(std::int64_t most) { return {WireField::Kind::kTexts, most}; }
+[[nodiscard]] constexpr WireField records(std::span<const WireField> record) {
+  return {WireField::Kind::kRecords, 0, record};
+}
+
+enum class WireFit { kFits, kMalformed, kTooLarge };
+
+/// Whether `bytes` (fingerprint included) is exactly one message of this shape, within its limits.
+[[nodiscard]] WireFit fits(std::span<const std::uint8_t> bytes, std::span<const WireField> layout);
+
+}  // namespace concord
