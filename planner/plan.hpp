@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "planner/grid.hpp"
+
+namespace concord {
+
+/// Why there is no path; the names in README.md travel in `Path::status`.
+enum class Reason {
+  kOk,
+  kBadRequest,
+  kNoMap,
+  kNoPose,
+  kStartOutsideMap,
+  kGoalOutsideMap,
+  kStartOccupied,
+  kGoalOccupied,
+  kStartUnknown,
+  kGoalUnknown,
+  kStartClearance,
+  kGoalClearance,
+  kNoValidPath,
+  kSearchLimit,
+  kValidationFailed,
+};
+
+/// E.g. "START_OCCUPIED".
+[[nodiscard]] const char* name(Reason reason);
+
+/// Robots wider than this, metres or cells, are refused: no door is, and time grows with the square.
+inline constexpr double kMaxRadius = 10.0;
+inline constexpr double kMaxRadiusCells = 1024.0;
+
+/// Cells a search looks at before it gives up: 80,000 square metres at 5 cm.
+inline constexpr std::int64_t kMaxExpanded = 32'000'000;
+
+struct PlanResult {
+  Reason reason = Reason::kNoMap;
+  std::string message;                  ///< for a person
+  std::vector<Eigen::Vector2d> points;  ///< map frame, metres, from the exact start to the exact goal; empty unless kOk
+  double length = 0.0;                  ///< metres
+  double least_clearance = 0.0;         ///< least distance to a blocked cell, metres
+  std::int64_t expanded = 0;            ///< cells the search looked at
+};
+
+/// A path for a round robot of `radius` metres over free cells, at any angle: the cheapest one over the grid's eight
+/// directions, shortened wherever the robot's disc can go straight, and checked by code that did not plan it.
+/// Unknown cells are walls. Any input is answered; the same input in the same way.
+[[nodiscard]] PlanResult plan(const Grid& grid, const Eigen::Vector2d& start, const Eigen::Vector2d& goal,
+                              double radius);
+
+}  // namespace concord
