@@ -1,10 +1,16 @@
 #include "core/brick_map.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 #include <xxhash.h>
 
 namespace concord {
+namespace {
+
+constexpr std::size_t kTileGrowth = 8;  // bricks
+
+}  // namespace
 
 const Tile* BrickMap::find(TileIndex index) const {
   const auto it = tiles_.find(index);
@@ -44,10 +50,25 @@ bool BrickMap::set(BrickIndex index, Brick brick) {
     return true;
   }
   if (brick.empty()) return false;
-  tile.bricks.insert(position, std::move(brick));
+  // Grown by a few at a time: doubling would waste as much as many bricks take.
+  const std::ptrdiff_t offset = position - tile.bricks.begin();
+  if (tile.bricks.size() == tile.bricks.capacity()) tile.bricks.reserve(tile.bricks.size() + kTileGrowth);
+  tile.bricks.insert(tile.bricks.begin() + offset, std::move(brick));
   tile.present |= bit;
   ++brick_count_;
   return true;
+}
+
+void BrickMap::set(TileIndex index, Tile tile) {
+  assert(static_cast<std::size_t>(std::popcount(tile.present)) == tile.bricks.size());
+  const auto it = tiles_.find(index);
+  if (it != tiles_.end()) brick_count_ -= it->second.bricks.size();
+  brick_count_ += tile.bricks.size();
+  if (tile.present != 0) {
+    tiles_.insert_or_assign(index, std::move(tile));
+  } else if (it != tiles_.end()) {
+    tiles_.erase(it);
+  }
 }
 
 void BrickMap::clear() {

@@ -30,6 +30,8 @@ class BrickMap {
 
   /// Replaces a brick; an empty one is removed. Returns whether the content changed.
   bool set(BrickIndex index, Brick brick);
+  /// Replaces a whole tile; one without bricks is removed. @pre one brick, not empty, for each bit of `tile.present`.
+  void set(TileIndex index, Tile tile);
   void clear();
 
   [[nodiscard]] bool empty() const { return brick_count_ == 0; }
