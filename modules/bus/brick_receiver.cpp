@@ -8,7 +8,7 @@ namespace concord {
 namespace {
 
 constexpr std::int64_t kStep = 10'000;
-constexpr std::int64_t kQuiet = 150'000;       ///< nothing came for so long: what was to come is lost
+constexpr std::int64_t kQuiet = 150'000;  ///< nothing came for so long: what was to come is lost
 constexpr std::int64_t kMaxBackOff = 30'000;
 constexpr std::int64_t kBootSilence = 3'000'000;
 constexpr std::size_t kMaxIntervalsHeld = 65'536;
@@ -67,8 +67,9 @@ void BrickReceiver::close_frame() {
 bool BrickReceiver::enter(std::int64_t boot_id, const std::string& frame_id, double resolution) {
   const std::int64_t time = bus_.now();
   if (std::abs(resolution - config_.resolution) > 1e-9) {
-    counters_.refused(config_.stream, {Code::kBadResolution, "stream has " + std::to_string(resolution) + " m, the site " +
-                                                                 std::to_string(config_.resolution) + " m"});
+    counters_.refused(config_.stream,
+                      {Code::kBadResolution, "stream has " + std::to_string(resolution) + " m, the site " +
+                                                 std::to_string(config_.resolution) + " m"});
     return false;
   }
   if (boot_id == boot_id_) {
@@ -89,11 +90,9 @@ bool BrickReceiver::enter(std::int64_t boot_id, const std::string& frame_id, dou
   asked_up_to_ = 0;
   ask_at_ = 0;
   covered_.clear();
-  if (frame_id == closed_frame_) {
-    frame_id_ = frame_id;
-    return false;
-  }
-  if (frame_id == frame_id_) {
+  const bool same = frame_id == frame_id_ && !frame_id.empty();
+  if (same && frame_id == closed_frame_) return false;
+  if (same) {
     for (auto& [index, held] : held_) held.version = 0;
     unconfirmed_ = !held_.empty();
     return true;
@@ -103,6 +102,7 @@ bool BrickReceiver::enter(std::int64_t boot_id, const std::string& frame_id, dou
   brick_count_ = 0;
   unconfirmed_ = false;
   frame_id_ = frame_id;
+  if (frame_id == closed_frame_) return false;
   if (!frame_id.empty()) {
     events_.on_frame(frame_id);
   } else if (events_.on_end) {

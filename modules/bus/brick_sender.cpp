@@ -19,7 +19,12 @@ constexpr double kOverheadBytes = 160;
 }  // namespace
 
 BrickSender::BrickSender(Bus& bus, Counters& counters, Config config, const BrickMap& map)
-    : bus_(bus), counters_(counters), config_(std::move(config)), channels_(config_.stream), map_(map), last_step_(bus.now()) {
+    : bus_(bus),
+      counters_(counters),
+      config_(std::move(config)),
+      channels_(config_.stream),
+      map_(map),
+      last_step_(bus.now()) {
   bus_.subscribe(channels_.need, [this, alive = std::weak_ptr(alive_)](const std::string& channel, auto bytes) {
     if (alive.expired()) return;
     const auto request = decode<BrickRequest>(bytes);
@@ -80,7 +85,8 @@ void BrickSender::on_request(const BrickRequest& request) {
 
 void BrickSender::send_now() {
   const std::int64_t time = bus_.now();
-  const double earned = config_.bytes_per_second * static_cast<double>(std::max<std::int64_t>(0, time - last_step_)) * 1e-6;
+  const double earned =
+      config_.bytes_per_second * static_cast<double>(std::max<std::int64_t>(0, time - last_step_)) * 1e-6;
   budget_ = std::min(budget_ + earned, kBurstBytes);
   last_step_ = time;
   if (!begun_) return;
@@ -123,7 +129,8 @@ void BrickSender::send_packet() {
 }
 
 void BrickSender::send_digest() {
-  const Bytes bytes = encode(BrickDigest{bus_.now(), config_.boot_id, frame_id_, config_.resolution, revision_, brick_count_, content_});
+  const Bytes bytes = encode(
+      BrickDigest{bus_.now(), config_.boot_id, frame_id_, config_.resolution, revision_, brick_count_, content_});
   next_digest_ = bus_.now() + kDigestPeriod;
   bytes_sent_ += static_cast<std::int64_t>(bytes.size());
   bus_.publish(channels_.digest, bytes);

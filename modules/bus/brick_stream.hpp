@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -99,9 +100,9 @@ class BrickSender {
   std::unordered_map<BrickIndex, Entry, IndexHash> entries_;
   std::map<std::int64_t, BrickIndex> live_;  ///< by version
   VersionSet pending_;
-  VersionSet repairs_;            ///< asked for, gathered until repairs_due_
+  VersionSet repairs_;  ///< asked for, gathered until repairs_due_
   std::int64_t repairs_due_ = 0;
-  double budget_ = 0;             ///< bytes that may be sent now
+  double budget_ = 0;  ///< bytes that may be sent now
   std::int64_t last_step_;
   std::int64_t next_digest_ = 0;
   std::int64_t bytes_sent_ = 0;
@@ -176,7 +177,7 @@ class BrickReceiver {
 
   std::int64_t boot_id_ = 0;
   std::string frame_id_;
-  std::string closed_frame_;
+  std::optional<std::string> closed_frame_;
   std::int64_t announced_ = 0;
   VersionSet covered_;
   std::unordered_map<BrickIndex, Held, IndexHash> held_;

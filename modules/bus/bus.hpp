@@ -8,8 +8,6 @@
 
 namespace concord {
 
-
-
 /// What a node sees of the network: named channels, a clock and timers. Everything runs in one thread.
 /// `LcmBus` is the real one; `LockstepBus` plays a log through nodes in one process on log time.
 class Bus {

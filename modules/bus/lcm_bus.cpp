@@ -28,8 +28,9 @@ void warn_about_small_buffers(const std::string& url) {
   long allowed = 0;
   std::ifstream("/proc/sys/net/core/rmem_max") >> allowed;
   if (allowed > 0 && allowed < kReceiveBuffer) {
-    spdlog::warn("net.core.rmem_max is {}: whole octomaps over {} kB may not arrive; run: sysctl -w net.core.rmem_max={}",
-                 allowed, allowed / 1000, kReceiveBuffer);
+    spdlog::warn(
+        "net.core.rmem_max is {}: whole octomaps over {} kB may not arrive; run: sysctl -w net.core.rmem_max={}",
+        allowed, allowed / 1000, kReceiveBuffer);
   }
 }
 
@@ -63,7 +64,8 @@ void LcmBus::publish(const std::string& channel, std::span<const std::uint8_t> b
 void LcmBus::every(std::int64_t period, Task task) { timers_.push_back({period, now() + period, std::move(task)}); }
 
 std::int64_t LcmBus::now() const {
-  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
+      .count();
 }
 
 void LcmBus::spin_once(int timeout_ms) {

@@ -38,8 +38,8 @@ void LockstepBus::deliver() {
 void LockstepBus::advance_to(std::int64_t utime) {
   deliver();
   while (true) {
-    const auto next = std::min_element(timers_.begin(), timers_.end(),
-                                       [](const Timer& a, const Timer& b) { return a.due < b.due; });
+    const auto next =
+        std::min_element(timers_.begin(), timers_.end(), [](const Timer& a, const Timer& b) { return a.due < b.due; });
     if (next == timers_.end() || next->due > utime) break;
     now_ = std::max(now_, next->due);
     next->due += next->period;

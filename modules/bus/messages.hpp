@@ -126,25 +126,43 @@ using Decoded = tl::expected<T, BadMessage>;
 template <class T>
 [[nodiscard]] Decoded<T> decode(std::span<const std::uint8_t> bytes);
 
-template <> Decoded<BrickPacket> decode(std::span<const std::uint8_t> bytes);
-template <> Decoded<BrickDigest> decode(std::span<const std::uint8_t> bytes);
-template <> Decoded<BrickRequest> decode(std::span<const std::uint8_t> bytes);
-template <> Decoded<OctomapMessage> decode(std::span<const std::uint8_t> bytes);
-template <> Decoded<CloudMessage> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<BrickPacket> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<BrickDigest> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<BrickRequest> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<OctomapMessage> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<CloudMessage> decode(std::span<const std::uint8_t> bytes);
 /// The agent's id stands in the channel, not in the message: the subscriber fills it in.
-template <> Decoded<AgentPose> decode(std::span<const std::uint8_t> bytes);
-template <> Decoded<MapPose> decode(std::span<const std::uint8_t> bytes);
-template <> Decoded<TransformRequest> decode(std::span<const std::uint8_t> bytes);
-template <> Decoded<AgentRequest> decode(std::span<const std::uint8_t> bytes);
-template <> Decoded<DownsampleRequest> decode(std::span<const std::uint8_t> bytes);
-template <> Decoded<Downsampled> decode(std::span<const std::uint8_t> bytes);
-template <> Decoded<MapRequest> decode(std::span<const std::uint8_t> bytes);
-template <> Decoded<MapList> decode(std::span<const std::uint8_t> bytes);
-template <> Decoded<PathRequest> decode(std::span<const std::uint8_t> bytes);
-template <> Decoded<Path> decode(std::span<const std::uint8_t> bytes);
-template <> Decoded<Answer> decode(std::span<const std::uint8_t> bytes);
-template <> Decoded<AgentList> decode(std::span<const std::uint8_t> bytes);
-template <> Decoded<ProcessStatus> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<AgentPose> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<MapPose> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<TransformRequest> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<AgentRequest> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<DownsampleRequest> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<Downsampled> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<MapRequest> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<MapList> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<PathRequest> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<Path> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<Answer> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<AgentList> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<ProcessStatus> decode(std::span<const std::uint8_t> bytes);
 
 /// An edit's indices only mean something at the map's resolution, which the receiver knows.
 [[nodiscard]] Decoded<EditRequest> decode_edit(std::span<const std::uint8_t> bytes, double resolution);
@@ -157,15 +175,16 @@ void answer(Bus& bus, const Answer& value);
 /// `process` names who refuses.
 template <class T, class Handle>
 void listen(Bus& bus, Counters& counters, const std::string& process, const std::string& channel_regex, Handle handle) {
-  bus.subscribe(channel_regex, [&bus, &counters, process, handle](const std::string& channel,
-                                                                 std::span<const std::uint8_t> bytes) {
-    Decoded<T> value = decode<T>(bytes);
-    if (value) return handle(channel, std::move(*value));
-    counters.refused(channel, value.error().error);
-    if (!value.error().id.empty()) {
-      answer(bus, {value.error().id, process, false, name(value.error().error.code), value.error().error.message, 0, 0});
-    }
-  });
+  bus.subscribe(channel_regex,
+                [&bus, &counters, process, handle](const std::string& channel, std::span<const std::uint8_t> bytes) {
+                  Decoded<T> value = decode<T>(bytes);
+                  if (value) return handle(channel, std::move(*value));
+                  counters.refused(channel, value.error().error);
+                  if (!value.error().id.empty()) {
+                    answer(bus, {value.error().id, process, false, name(value.error().error.code),
+                                 value.error().error.message, 0, 0});
+                  }
+                });
 }
 
 }  // namespace concord

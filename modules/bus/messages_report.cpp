@@ -82,8 +82,15 @@ Bytes encode(const Downsampled& value, std::int64_t utime) {
 
 template <>
 Decoded<Downsampled> decode<Downsampled>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength), text(wire::kNameLength), text(wire::kNameLength),
-                                          fixed(8 + 4 + 4), count(10'000), array(4), array(4), array(4)};
+  static constexpr WireField kLayout[] = {fixed(8),
+                                          text(wire::kIdLength),
+                                          text(wire::kNameLength),
+                                          text(wire::kNameLength),
+                                          fixed(8 + 4 + 4),
+                                          count(10'000),
+                                          array(4),
+                                          array(4),
+                                          array(4)};
   const auto in = wire::from_bytes<downsampled_t>(bytes, kLayout);
   if (!in) return bad(in.error());
   if (in->part < 0 || in->parts < 1 || in->part >= in->parts) return bad(Code::kMalformed, "part is not one of parts");
@@ -106,7 +113,8 @@ Bytes encode(const MapList& value, std::int64_t utime) {
 
 template <>
 Decoded<MapList> decode<MapList>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength), count(kMaxFiles), texts(kMaxFileName), array(8)};
+  static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength), count(kMaxFiles), texts(kMaxFileName),
+                                          array(8)};
   const auto in = wire::from_bytes<map_list_t>(bytes, kLayout);
   if (!in) return bad(in.error());
   MapList out{in->request_id, {}};
@@ -179,8 +187,9 @@ Bytes encode(const Answer& value, std::int64_t utime) {
 
 template <>
 Decoded<Answer> decode<Answer>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength),      text(wire::kNameLength),   fixed(1),
-                                          text(wire::kNameLength), text(wire::kMessageLength), fixed(8 + 8)};
+  static constexpr WireField kLayout[] = {fixed(8),    text(wire::kIdLength),   text(wire::kNameLength),
+                                          fixed(1),    text(wire::kNameLength), text(wire::kMessageLength),
+                                          fixed(8 + 8)};
   const auto in = wire::from_bytes<answer_t>(bytes, kLayout);
   if (!in) return bad(in.error());
   return Answer{in->request_id, in->process, in->ok != 0, in->code, in->message, in->revision, in->count};
@@ -226,7 +235,8 @@ Bytes encode(const ProcessStatus& value) {
 
 template <>
 Decoded<ProcessStatus> decode<ProcessStatus>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {fixed(8), text(wire::kNameLength), fixed(8), count(1024), texts(kMaxCounterName), array(8)};
+  static constexpr WireField kLayout[] = {fixed(8),    text(wire::kNameLength), fixed(8),
+                                          count(1024), texts(kMaxCounterName),  array(8)};
   const auto in = wire::from_bytes<status_t>(bytes, kLayout);
   if (!in) return bad(in.error());
   ProcessStatus out{in->utime, in->process, in->boot_id, {}};

@@ -58,8 +58,12 @@ Bytes encode(const TransformRequest& value, std::int64_t utime) {
 
 template <>
 Decoded<TransformRequest> decode<TransformRequest>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength), text(wire::kIdLength), text(wire::kNameLength),
-                                          text(wire::kNameLength), fixed(wire::kTransformBytes)};
+  static constexpr WireField kLayout[] = {fixed(8),
+                                          text(wire::kIdLength),
+                                          text(wire::kIdLength),
+                                          text(wire::kNameLength),
+                                          text(wire::kNameLength),
+                                          fixed(wire::kTransformBytes)};
   const auto in = wire::from_bytes<set_transform_t>(bytes, kLayout);
   if (!in) return bad(in.error());
   if (!wire::is_request_id(in->request_id)) return tl::unexpected(bad_id());
@@ -92,12 +96,22 @@ Bytes encode(const EditRequest& value, double resolution) {
 }
 
 Decoded<EditRequest> decode_edit(std::span<const std::uint8_t> bytes, double resolution) {
-  static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength), text(wire::kIdLength), fixed(1 + 8),
-                                          count(kMaxEditBoxes), array(4), array(4), array(4), array(4), array(4), array(4)};
+  static constexpr WireField kLayout[] = {fixed(8),
+                                          text(wire::kIdLength),
+                                          text(wire::kIdLength),
+                                          fixed(1 + 8),
+                                          count(kMaxEditBoxes),
+                                          array(4),
+                                          array(4),
+                                          array(4),
+                                          array(4),
+                                          array(4),
+                                          array(4)};
   const auto in = wire::from_bytes<edit_t>(bytes, kLayout);
   if (!in) return bad(in.error());
   if (!wire::is_request_id(in->edit_id)) return tl::unexpected(bad_id());
-  if (in->op != edit_t::ADD && in->op != edit_t::DELETE) return bad(Code::kBadRequest, "op must be ADD or DELETE", in->edit_id);
+  if (in->op != edit_t::ADD && in->op != edit_t::DELETE)
+    return bad(Code::kBadRequest, "op must be ADD or DELETE", in->edit_id);
   if (!(std::abs(in->resolution - resolution) < 1e-9)) {
     return bad(Code::kBadResolution, "the map's resolution is " + std::to_string(resolution) + " m", in->edit_id);
   }
@@ -174,7 +188,7 @@ Bytes encode(const MapRequest& value, std::int64_t utime) {
 
 template <>
 Decoded<MapRequest> decode<MapRequest>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength), fixed(1), text(wire::kNameLength), text(2),
+  static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength),  fixed(1), text(wire::kNameLength), text(2),
                                           fixed(1), text(wire::kNameLength)};
   const auto in = wire::from_bytes<map_request_t>(bytes, kLayout);
   if (!in) return bad(in.error());
@@ -190,7 +204,8 @@ Decoded<MapRequest> decode<MapRequest>(std::span<const std::uint8_t> bytes) {
     return bad(Code::kBadName, "a map's name is 1 to 40 of A-Z a-z 0-9 . _ -, starting with a letter or digit", out.id);
   }
   const bool any_format = out.format.empty() && out.op == MapRequest::Op::kLoad;
-  if (!any_format && out.format != "bt" && out.format != "ot") return bad(Code::kBadRequest, "format must be bt or ot", out.id);
+  if (!any_format && out.format != "bt" && out.format != "ot")
+    return bad(Code::kBadRequest, "format must be bt or ot", out.id);
   if (!out.agent.empty() && !is_name(out.agent)) return tl::unexpected(bad_agent(out.id));
   return out;
 }
@@ -213,18 +228,21 @@ Bytes encode(const PathRequest& value, std::int64_t utime) {
 
 template <>
 Decoded<PathRequest> decode<PathRequest>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength), text(wire::kNameLength), fixed(1 + 16 + 16 + 8 + 1)};
+  static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength), text(wire::kNameLength),
+                                          fixed(1 + 16 + 16 + 8 + 1)};
   const auto in = wire::from_bytes<path_request_t>(bytes, kLayout);
   if (!in) return bad(in.error());
   if (!wire::is_request_id(in->request_id)) return tl::unexpected(bad_id());
   if (!is_name(in->robot)) return tl::unexpected(bad_agent(in->request_id));
-  PathRequest out{in->request_id, in->robot, std::nullopt, {in->goal[0], in->goal[1]}, in->radius, in->keep_active != 0};
+  PathRequest out{in->request_id, in->robot,           std::nullopt, {in->goal[0], in->goal[1]},
+                  in->radius,     in->keep_active != 0};
   if (in->has_start) out.start = Eigen::Vector2d(in->start[0], in->start[1]);
   const auto finite = [](const Eigen::Vector2d& p) { return p.allFinite() && p.cwiseAbs().maxCoeff() < 10'000; };
   if (!finite(out.goal) || (out.start && !finite(*out.start))) {
     return bad(Code::kNotFinite, "start and goal must be finite, in metres, within 10 km", out.id);
   }
-  if (!(out.radius >= 0 && out.radius <= 10)) return bad(Code::kBadRequest, "radius must lie between 0 and 10 m", out.id);
+  if (!(out.radius >= 0 && out.radius <= 10))
+    return bad(Code::kBadRequest, "radius must lie between 0 and 10 m", out.id);
   return out;
 }
 

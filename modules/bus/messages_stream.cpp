@@ -1,11 +1,11 @@
 // Translators of what carries maps: brick streams, whole octomaps, clouds.
 
+#include <xxhash.h>
 #include <concord/brick_digest_t.hpp>
 #include <concord/brick_packet_t.hpp>
 #include <concord/brick_request_t.hpp>
 #include <concord/cloud_t.hpp>
 #include <concord/octomap_t.hpp>
-#include <xxhash.h>
 
 #include "bus/translate.hpp"
 
@@ -66,8 +66,8 @@ Decoded<BrickPacket> decode<BrickPacket>(std::span<const std::uint8_t> bytes) {
   }
   if (in->submap_id != 0) return bad(Code::kBadRequest, "submap_id must be 0");
   if (checksum(in->data) != in->checksum) return bad(Code::kMalformed, "checksum of a brick packet is wrong");
-  return BrickPacket{in->utime,      in->boot_id,      in->frame_id,    in->resolution,
-                     in->first_version, in->last_version, in->count, std::move(in->data)};
+  return BrickPacket{in->utime,         in->boot_id,      in->frame_id, in->resolution,
+                     in->first_version, in->last_version, in->count,    std::move(in->data)};
 }
 
 Bytes encode(const BrickDigest& value) {
@@ -97,8 +97,13 @@ Decoded<BrickDigest> decode<BrickDigest>(std::span<const std::uint8_t> bytes) {
     return bad(Code::kMalformed, "a digest counts more bricks than versions");
   }
   if (in->submap_id != 0) return bad(Code::kBadRequest, "submap_id must be 0");
-  return BrickDigest{in->utime,    in->boot_id,     in->frame_id, in->resolution,
-                     in->revision, in->brick_count, static_cast<std::uint64_t>(in->content)};
+  return BrickDigest{in->utime,
+                     in->boot_id,
+                     in->frame_id,
+                     in->resolution,
+                     in->revision,
+                     in->brick_count,
+                     static_cast<std::uint64_t>(in->content)};
 }
 
 Bytes encode(const BrickRequest& value, std::int64_t utime) {
@@ -141,7 +146,8 @@ Bytes encode(const OctomapMessage& value) {
 
 template <>
 Decoded<OctomapMessage> decode<OctomapMessage>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {fixed(8), text(wire::kNameLength), fixed(8 + 1), count(kMaxOctomapBytes), array(1)};
+  static constexpr WireField kLayout[] = {fixed(8), text(wire::kNameLength), fixed(8 + 1), count(kMaxOctomapBytes),
+                                          array(1)};
   auto in = wire::from_bytes<octomap_t>(bytes, kLayout);
   if (!in) return bad(in.error());
   if (auto ok = check_frame(in->frame_id); !ok) return bad(ok.error());
@@ -168,8 +174,13 @@ Bytes encode(const CloudMessage& value) {
 
 template <>
 Decoded<CloudMessage> decode<CloudMessage>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {fixed(16), text(wire::kNameLength), fixed(1 + wire::kTransformBytes + 8),
-                                          count(kMaxCloudPoints), array(4), array(4), array(4)};
+  static constexpr WireField kLayout[] = {fixed(16),
+                                          text(wire::kNameLength),
+                                          fixed(1 + wire::kTransformBytes + 8),
+                                          count(kMaxCloudPoints),
+                                          array(4),
+                                          array(4),
+                                          array(4)};
   const auto in = wire::from_bytes<cloud_t>(bytes, kLayout);
   if (!in) return bad(in.error());
   if (auto ok = check_frame(in->frame_id); !ok) return bad(ok.error());

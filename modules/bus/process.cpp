@@ -3,8 +3,8 @@
 #include <atomic>
 #include <csignal>
 
-#include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
 
 #include "bus/lcm_bus.hpp"
 #include "bus/messages.hpp"

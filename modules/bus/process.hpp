@@ -19,8 +19,8 @@ struct NodeContext {
   Bus& bus;
   Counters& counters;
   const Site& site;
-  std::string process;     ///< its name, for answers and status
-  std::int64_t boot_id;    ///< this start, microseconds since 1970
+  std::string process;   ///< its name, for answers and status
+  std::int64_t boot_id;  ///< this start, microseconds since 1970
 };
 
 /// Runs a node as an LCM process: `--site FILE`, signals, a status message each second on out/status/<process>,

@@ -96,11 +96,12 @@ Policy read_policy(Section& section, Policy policy) {
 /// LCM takes the time-to-live from the url; above 0 packets leave the host.
 void check_reach(const Site& site) {
   const auto at = site.lcm_url.find("ttl=");
-  const bool stays = site.lcm_url.rfind("udpm", 0) != 0 ||
-                     (at != std::string::npos && std::atoi(site.lcm_url.c_str() + at + 4) == 0);
+  const bool stays =
+      site.lcm_url.rfind("udpm", 0) != 0 || (at != std::string::npos && std::atoi(site.lcm_url.c_str() + at + 4) == 0);
   if (!stays && !site.beyond_host) {
-    throw ConfigError("lcm_url has a ttl above 0 or none: LCM has no authentication; "
-                      "use ttl=0, or set beyond_host: true on a trusted network");
+    throw ConfigError(
+        "lcm_url has a ttl above 0 or none: LCM has no authentication; "
+        "use ttl=0, or set beyond_host: true on a trusted network");
   }
 }
 

@@ -13,8 +13,8 @@ namespace concord {
 /// What the site file says of one agent; agents it does not name get `Site::unlisted`.
 struct AgentConfig {
   std::string kind = "unknown";
-  int weight = 1;         ///< 1 to 1000
-  double radius = 0.3;    ///< metres; as a robot on the grid
+  int weight = 1;       ///< 1 to 1000
+  double radius = 0.3;  ///< metres; as a robot on the grid
 };
 
 /// The one YAML file of a site: a section per process, unknown keys are errors. Defaults stand here.

@@ -35,8 +35,10 @@ template <class Lcm>
   }
   switch (fits(bytes, layout)) {
     case WireFit::kFits: break;
-    case WireFit::kTooLarge: return refuse(Code::kTooLarge, std::string(Lcm::getTypeName()) + " is over a limit, see its .lcm file");
-    case WireFit::kMalformed: return refuse(Code::kMalformed, std::string("bytes end early or late for a ") + Lcm::getTypeName());
+    case WireFit::kTooLarge:
+      return refuse(Code::kTooLarge, std::string(Lcm::getTypeName()) + " is over a limit, see its .lcm file");
+    case WireFit::kMalformed:
+      return refuse(Code::kMalformed, std::string("bytes end early or late for a ") + Lcm::getTypeName());
   }
   Lcm message;
   if (message.decode(bytes.data(), 0, static_cast<int>(bytes.size())) != static_cast<int>(bytes.size())) {

@@ -57,7 +57,8 @@ class Walk {
     const std::optional<std::int32_t> length = int32();
     if (!length || *length < 1) return false;
     if (*length - 1 > most) return fail_too_large();
-    if (static_cast<std::size_t>(*length) > rest_.size() || rest_[static_cast<std::size_t>(*length) - 1] != 0) return false;
+    if (static_cast<std::size_t>(*length) > rest_.size() || rest_[static_cast<std::size_t>(*length) - 1] != 0)
+      return false;
     return skip(*length);
   }
 
