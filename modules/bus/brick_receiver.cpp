@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+
+#include <xxhash.h>
 
 #include "bus/brick_stream.hpp"
 #include "core/brick_codec.hpp"
@@ -12,7 +15,8 @@ constexpr std::int64_t kQuiet = 150'000;  ///< nothing came for so long: what wa
 constexpr std::int64_t kMaxBackOff = 30'000;
 constexpr std::int64_t kBootSilence = 3'000'000;
 constexpr std::size_t kMaxIntervalsHeld = 65'536;
-constexpr std::size_t kMaxIntervalsAsked = 64;
+constexpr std::size_t kMaxIntervalsAsked = 64;  ///< in one request: one frame on the wire
+constexpr std::size_t kMaxRequests = 16;        ///< in one go
 
 std::uint64_t next_random(std::uint64_t& state) {
   state += 0x9E3779B97F4A7C15ULL;
@@ -29,14 +33,14 @@ BrickReceiver::BrickReceiver(Bus& bus, Counters& counters, Config config, Events
       config_(std::move(config)),
       channels_(config_.stream),
       events_(std::move(events)),
-      random_(static_cast<std::uint64_t>(bus.now()) ^ std::hash<std::string>{}(config_.stream)) {
+      random_(static_cast<std::uint64_t>(bus.now()) ^ XXH3_64bits(config_.stream.data(), config_.stream.size())) {
   bus_.every(kStep, [this, alive = std::weak_ptr(alive_)] {
     if (!alive.expired()) request_missing();
   });
 }
 
 bool BrickReceiver::synced() const {
-  return heard() && !unconfirmed_ && (announced_ == 0 || covered_.contains(1, announced_));
+  return digest_heard_ && !unconfirmed_ && (announced_ == 0 || covered_.contains(1, announced_));
 }
 
 std::int64_t BrickReceiver::missing() const {
@@ -46,10 +50,12 @@ std::int64_t BrickReceiver::missing() const {
 }
 
 void BrickReceiver::adopt(const std::string& frame_id, const BrickMap& map) {
+  assert(!heard() && held_.empty());
   frame_id_ = frame_id;
   map.for_each_brick([&](BrickIndex index, const Brick& brick) {
-    held_[index] = {0, content_hash(index, brick), false};
-    content_ += held_[index].content;
+    const std::uint64_t content = content_hash(index, brick);
+    held_[index] = {0, content, false};
+    content_ += content;
     ++brick_count_;
   });
   unconfirmed_ = brick_count_ > 0;
@@ -57,6 +63,10 @@ void BrickReceiver::adopt(const std::string& frame_id, const BrickMap& map) {
 
 void BrickReceiver::close_frame() {
   closed_frame_ = frame_id_;
+  forget_held();
+}
+
+void BrickReceiver::forget_held() {
   held_.clear();
   content_ = 0;
   brick_count_ = 0;
@@ -87,28 +97,32 @@ bool BrickReceiver::enter(std::int64_t boot_id, const std::string& frame_id, dou
   boot_id_ = boot_id;
   last_heard_ = time;
   announced_ = 0;
+  digest_heard_ = false;
   asked_up_to_ = 0;
   ask_at_ = 0;
   covered_.clear();
   const bool same = frame_id == frame_id_ && !frame_id.empty();
-  if (same && frame_id == closed_frame_) return false;
-  if (same) {
-    for (auto& [index, held] : held_) held.version = 0;
-    unconfirmed_ = !held_.empty();
-    return true;
-  }
-  held_.clear();
-  content_ = 0;
-  brick_count_ = 0;
-  unconfirmed_ = false;
   frame_id_ = frame_id;
+  if (same) {
+    doubt_held();
+  } else {
+    forget_held();
+  }
   if (frame_id == closed_frame_) return false;
+  if (same) return true;
   if (!frame_id.empty()) {
     events_.on_frame(frame_id);
   } else if (events_.on_end) {
     events_.on_end();
   }
   return true;
+}
+
+/// What is held may no longer be so: the versions it came with say nothing any more.
+void BrickReceiver::doubt_held() {
+  covered_.clear();
+  for (auto& [index, held] : held_) held.version = 0;
+  unconfirmed_ = !held_.empty();
 }
 
 Result<std::vector<BrickReceiver::Arrived>> BrickReceiver::unpack(const BrickPacket& packet) const {
@@ -140,11 +154,18 @@ Result<std::vector<BrickReceiver::Arrived>> BrickReceiver::unpack(const BrickPac
 }
 
 void BrickReceiver::on_packet(const BrickPacket& packet) {
+  const bool present = packet.boot_id == boot_id_ && packet.frame_id == frame_id_;
+  if (present && covered_.contains(packet.first_version, packet.last_version)) {
+    // Heard before; and if it was long under way, what it holds may have been replaced since.
+    last_heard_ = bus_.now();
+    return;
+  }
   auto bricks = unpack(packet);
   if (!bricks) return counters_.refused(channels_.bricks, bricks.error());
   if (!enter(packet.boot_id, packet.frame_id, packet.resolution)) return;
-  if (static_cast<std::int64_t>(held_.size() + bricks->size()) > config_.max_bricks ||
-      covered_.intervals().size() >= kMaxIntervalsHeld) {
+  const bool more_holes =
+      covered_.intervals().size() >= kMaxIntervalsHeld && !covered_.touches(packet.first_version, packet.last_version);
+  if (more_holes || static_cast<std::int64_t>(held_.size() + bricks->size()) > config_.max_bricks) {
     return counters_.refused(channels_.bricks, {Code::kTooLarge, "stream has more bricks or holes than are kept"});
   }
   for (Arrived& arrived : *bricks) hold(std::move(arrived));
@@ -167,7 +188,6 @@ void BrickReceiver::cover(std::int64_t first, std::int64_t last) {
   if (first <= asked_up_to_ && !covered_.contains(first, last)) last_progress_ = bus_.now();
   covered_.add(first, last);
   announced_ = std::max(announced_, last);
-  if (unconfirmed_ && covered_.contains(1, announced_)) drop_unconfirmed();
 }
 
 /// All that the present epoch has was sent again: what it did not speak of is no longer there.
@@ -191,25 +211,25 @@ void BrickReceiver::drop_unconfirmed() {
 
 void BrickReceiver::on_digest(const BrickDigest& digest) {
   if (!enter(digest.boot_id, digest.frame_id, digest.resolution)) return;
+  digest_heard_ = true;
   announced_ = std::max(announced_, digest.revision);
-  if (digest.revision == announced_) compare(digest);
+  if (digest.revision == announced_) compare(digest);  // else packets overtook it
 }
 
 void BrickReceiver::compare(const BrickDigest& digest) {
-  const bool equal = digest.brick_count == brick_count_ && digest.content == content_;
-  if (unconfirmed_ && equal) {
+  const auto equal = [&] { return digest.brick_count == brick_count_ && digest.content == content_; };
+  if (unconfirmed_ && equal()) {
     // The sender began anew with what is held here: nothing needs to be sent.
     unconfirmed_ = false;
     if (digest.revision > 0) covered_.add(1, digest.revision);
     return;
   }
-  if (unconfirmed_ && digest.revision == 0) return drop_unconfirmed();
-  if (!equal && !unconfirmed_ && digest.revision > 0 && covered_.contains(1, digest.revision)) {
-    counters_.add("stream_mismatch." + config_.stream);
-    covered_.clear();
-    for (auto& [index, held] : held_) held.version = 0;
-    unconfirmed_ = true;
-  }
+  if (digest.revision > 0 && !covered_.contains(1, digest.revision)) return;
+  // Only a digest may end the doubt: before it, a packet's reach is not the sender's.
+  if (unconfirmed_) drop_unconfirmed();
+  if (equal()) return;
+  counters_.add("stream_mismatch." + config_.stream);
+  doubt_held();
 }
 
 void BrickReceiver::request_missing() {
@@ -229,12 +249,16 @@ void BrickReceiver::request_missing() {
     return;
   }
   if (time < ask_at_) return;
-  if (holes.size() > kMaxIntervalsAsked) holes.resize(kMaxIntervalsAsked);
+  if (holes.size() > kMaxIntervalsAsked * kMaxRequests) holes.resize(kMaxIntervalsAsked * kMaxRequests);
   asked_up_to_ = holes.back().second;
   last_progress_ = time;
   ask_at_ = 0;
-  counters_.add("requests." + config_.stream);
-  bus_.publish(channels_.need, encode(BrickRequest{boot_id_, holes}, time));
+  for (std::size_t i = 0; i < holes.size(); i += kMaxIntervalsAsked) {
+    const auto end = holes.begin() + static_cast<std::ptrdiff_t>(std::min(i + kMaxIntervalsAsked, holes.size()));
+    counters_.add("requests." + config_.stream);
+    bus_.publish(channels_.need,
+                 encode(BrickRequest{boot_id_, {holes.begin() + static_cast<std::ptrdiff_t>(i), end}}, time));
+  }
 }
 
 }  // namespace concord

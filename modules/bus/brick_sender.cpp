@@ -10,6 +10,8 @@ namespace {
 constexpr std::size_t kPacketBytes = 1200;
 constexpr std::int64_t kStep = 5'000;
 constexpr std::int64_t kDigestPeriod = 1'000'000;
+/// A pass ends with a digest, but a trickle of changes is not doubled by digests.
+constexpr std::int64_t kDigestAfterPass = 50'000;
 constexpr std::int64_t kGatherRepairs = 80'000;
 /// What may be sent in one go after a pause: well inside a default socket buffer.
 constexpr double kBurstBytes = 100'000;
@@ -64,11 +66,15 @@ void BrickSender::end() {
 void BrickSender::touch(BrickIndex index) {
   assert(begun_ && !frame_id_.empty());
   const Brick* brick = map_.find(index);
-  Entry& entry = entries_[index];
+  const bool gone = brick == nullptr;
+  const std::uint64_t content = gone ? 0 : content_hash(index, *brick);
+  const auto known = entries_.find(index);
+  if (known == entries_.end() ? gone : known->second.gone == gone && known->second.content == content) return;
+  Entry& entry = known != entries_.end() ? known->second : entries_[index];
   if (entry.version != 0) live_.erase(entry.version);
   content_ -= entry.content;
   brick_count_ -= entry.gone ? 0 : 1;
-  entry = {++revision_, brick != nullptr ? content_hash(index, *brick) : 0, brick == nullptr};
+  entry = {++revision_, content, gone};
   content_ += entry.content;
   brick_count_ += entry.gone ? 0 : 1;
   live_.emplace_hint(live_.end(), entry.version, index);
@@ -90,17 +96,23 @@ void BrickSender::send_now() {
   budget_ = std::min(budget_ + earned, kBurstBytes);
   last_step_ = time;
   if (!begun_) return;
-  if (!repairs_.empty() && time >= repairs_due_) {
-    for (const auto& [first, last] : repairs_.intervals()) pending_.add(first, last);
-    repairs_.clear();
+  if (time >= next_digest_) send_digest();
+  const bool had_work = !pending_.empty() || repairs_ready();
+  while (budget_ > 0 && (!pending_.empty() || repairs_ready())) {
+    // In turns: a late joiner who asks for everything must not hold up what is new, nor what is new the joiner.
+    const bool repair = pending_.empty() || (repair_next_ && repairs_ready());
+    repair_next_ = !repair;
+    const auto [first, last] = *(repair ? repairs_ : pending_).intervals().begin();
+    send_packet(first, last);
   }
-  const bool had_work = !pending_.empty();
-  while (!pending_.empty() && budget_ > 0) send_packet();
-  if ((had_work && pending_.empty()) || time >= next_digest_) send_digest();
+  if (!had_work || !pending_.empty() || repairs_ready()) return;
+  next_digest_ = std::min(next_digest_, last_digest_ + kDigestAfterPass);
+  if (time >= next_digest_) send_digest();
 }
 
-void BrickSender::send_packet() {
-  const auto [first, last] = *pending_.intervals().begin();
+bool BrickSender::repairs_ready() const { return !repairs_.empty() && bus_.now() >= repairs_due_; }
+
+void BrickSender::send_packet(std::int64_t first, std::int64_t last) {
   BrickPacket packet{bus_.now(), config_.boot_id, frame_id_, config_.resolution, first, last, 0, {}};
   BrickIndex before{};
   Bytes one;
@@ -122,6 +134,7 @@ void BrickSender::send_packet() {
     before = index;
   }
   pending_.remove(packet.first_version, packet.last_version);
+  repairs_.remove(packet.first_version, packet.last_version);
   const Bytes bytes = encode(packet);
   budget_ -= static_cast<double>(packet.data.size()) + kOverheadBytes;
   bytes_sent_ += static_cast<std::int64_t>(bytes.size());
@@ -131,7 +144,8 @@ void BrickSender::send_packet() {
 void BrickSender::send_digest() {
   const Bytes bytes = encode(
       BrickDigest{bus_.now(), config_.boot_id, frame_id_, config_.resolution, revision_, brick_count_, content_});
-  next_digest_ = bus_.now() + kDigestPeriod;
+  last_digest_ = bus_.now();
+  next_digest_ = last_digest_ + kDigestPeriod;
   bytes_sent_ += static_cast<std::int64_t>(bytes.size());
   bus_.publish(channels_.digest, bytes);
 }

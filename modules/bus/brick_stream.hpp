@@ -34,6 +34,8 @@ class VersionSet {
 
   [[nodiscard]] bool empty() const { return intervals_.empty(); }
   [[nodiscard]] bool contains(std::int64_t first, std::int64_t last) const;
+  /// Whether adding this interval would join it to one that is there.
+  [[nodiscard]] bool touches(std::int64_t first, std::int64_t last) const;
   [[nodiscard]] std::int64_t highest() const { return empty() ? 0 : intervals_.rbegin()->second; }
   [[nodiscard]] const std::map<std::int64_t, std::int64_t>& intervals() const { return intervals_; }
   /// The parts of [1, last] that are not in the set.
@@ -61,7 +63,7 @@ class BrickSender {
 
   /// A new frame: everything sent so far is void; every brick in the map now is sent. Nothing is sent before the first.
   void begin(const std::string& frame_id);
-  /// The owner changed this brick (or emptied it). @pre begin was called.
+  /// The owner changed this brick (or emptied it); one that is as it was sent costs nothing. @pre begin was called.
   void touch(BrickIndex index);
   /// The owner stops speaking of this content (agent removed); digests say so until the next `begin`.
   void end();
@@ -81,7 +83,8 @@ class BrickSender {
   };
 
   void renew_epoch();
-  void send_packet();
+  [[nodiscard]] bool repairs_ready() const;
+  void send_packet(std::int64_t first, std::int64_t last);
   void send_digest();
   void on_request(const BrickRequest& request);
 
@@ -99,11 +102,13 @@ class BrickSender {
   std::uint64_t content_ = 0;
   std::unordered_map<BrickIndex, Entry, IndexHash> entries_;
   std::map<std::int64_t, BrickIndex> live_;  ///< by version
-  VersionSet pending_;
-  VersionSet repairs_;  ///< asked for, gathered until repairs_due_
+  VersionSet pending_;                       ///< never sent
+  VersionSet repairs_;                       ///< asked for, gathered until repairs_due_
   std::int64_t repairs_due_ = 0;
+  bool repair_next_ = false;
   double budget_ = 0;  ///< bytes that may be sent now
   std::int64_t last_step_;
+  std::int64_t last_digest_ = 0;
   std::int64_t next_digest_ = 0;
   std::int64_t bytes_sent_ = 0;
 };
@@ -135,7 +140,7 @@ class BrickReceiver {
   void on_packet(const BrickPacket& packet);
   void on_digest(const BrickDigest& digest);
 
-  /// All versions up to the last announced revision have arrived.
+  /// All versions up to the last announced revision have arrived; false until a digest announced one.
   [[nodiscard]] bool synced() const;
   [[nodiscard]] bool heard() const { return boot_id_ != 0; }
   [[nodiscard]] const std::string& frame_id() const { return frame_id_; }
@@ -164,6 +169,8 @@ class BrickReceiver {
   [[nodiscard]] Result<std::vector<Arrived>> unpack(const BrickPacket& packet) const;
   void hold(Arrived arrived);
   void cover(std::int64_t first, std::int64_t last);
+  void forget_held();
+  void doubt_held();
   void drop_unconfirmed();
   void compare(const BrickDigest& digest);
   void request_missing();
@@ -183,7 +190,8 @@ class BrickReceiver {
   std::unordered_map<BrickIndex, Held, IndexHash> held_;
   std::int64_t brick_count_ = 0;
   std::uint64_t content_ = 0;
-  bool unconfirmed_ = false;  ///< some held bricks are from an earlier epoch
+  bool unconfirmed_ = false;   ///< some held bricks are from an earlier epoch
+  bool digest_heard_ = false;  ///< in this epoch: before it nobody knows how much there is
   std::int64_t last_heard_ = 0;
   std::int64_t last_progress_ = 0;
   std::int64_t asked_up_to_ = 0;

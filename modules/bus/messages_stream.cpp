@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::int64_t kMaxPacketBytes = 60'000;
 constexpr std::int64_t kMaxIntervals = 4096;
+constexpr std::int64_t kMaxVersion = std::int64_t{1} << 60;  ///< sums of a few do not overflow
 constexpr std::int64_t kMaxOctomapBytes = 200'000'000;
 constexpr std::int64_t kMaxCloudPoints = 2'000'000;
 
@@ -30,6 +31,8 @@ Result<void> check_resolution(double resolution) {
   }
   return {};
 }
+
+bool is_interval(std::int64_t first, std::int64_t last) { return first >= 1 && first <= last && last <= kMaxVersion; }
 
 std::int32_t checksum(std::span<const std::uint8_t> data) {
   return static_cast<std::int32_t>(XXH32(data.data(), data.size(), 0));
@@ -61,8 +64,8 @@ Decoded<BrickPacket> decode<BrickPacket>(std::span<const std::uint8_t> bytes) {
   if (!in) return bad(in.error());
   if (auto ok = check_frame(in->frame_id); !ok) return bad(ok.error());
   if (auto ok = check_resolution(in->resolution); !ok) return bad(ok.error());
-  if (in->first_version < 1 || in->last_version < in->first_version || in->count < 0) {
-    return bad(Code::kMalformed, "versions of a packet must be positive and in order");
+  if (!is_interval(in->first_version, in->last_version) || in->boot_id < 1 || in->count < 0) {
+    return bad(Code::kMalformed, "versions and boot_id of a packet must be positive and in order");
   }
   if (in->submap_id != 0) return bad(Code::kBadRequest, "submap_id must be 0");
   if (checksum(in->data) != in->checksum) return bad(Code::kMalformed, "checksum of a brick packet is wrong");
@@ -93,8 +96,8 @@ Decoded<BrickDigest> decode<BrickDigest>(std::span<const std::uint8_t> bytes) {
     if (auto ok = check_frame(in->frame_id); !ok) return bad(ok.error());
   }
   if (auto ok = check_resolution(in->resolution); !ok) return bad(ok.error());
-  if (in->revision < 0 || in->brick_count < 0 || in->brick_count > in->revision) {
-    return bad(Code::kMalformed, "a digest counts more bricks than versions");
+  if (in->boot_id < 1 || in->brick_count < 0 || in->brick_count > in->revision || in->revision > kMaxVersion) {
+    return bad(Code::kMalformed, "a digest counts more bricks than versions, or has no boot_id");
   }
   if (in->submap_id != 0) return bad(Code::kBadRequest, "submap_id must be 0");
   return BrickDigest{in->utime,
@@ -125,7 +128,7 @@ Decoded<BrickRequest> decode<BrickRequest>(std::span<const std::uint8_t> bytes) 
   if (!in) return bad(in.error());
   BrickRequest out{in->boot_id, {}};
   for (std::size_t i = 0; i < in->first_version.size(); ++i) {
-    if (in->first_version[i] < 1 || in->last_version[i] < in->first_version[i]) {
+    if (!is_interval(in->first_version[i], in->last_version[i])) {
       return bad(Code::kMalformed, "an interval of versions is out of order");
     }
     out.intervals.emplace_back(in->first_version[i], in->last_version[i]);

@@ -9,15 +9,19 @@ void VersionSet::add(std::int64_t first, std::int64_t last) {
   auto it = intervals_.upper_bound(first);
   if (it != intervals_.begin() && std::prev(it)->second >= first - 1) {
     --it;
-    first = it->first;
-    last = std::max(last, it->second);
-    it = intervals_.erase(it);
+    it->second = std::max(last, it->second);
+  } else {
+    it = intervals_.emplace_hint(it, first, last);
   }
-  while (it != intervals_.end() && it->first <= last + 1) {
-    last = std::max(last, it->second);
-    it = intervals_.erase(it);
+  for (auto next = std::next(it); next != intervals_.end() && next->first <= it->second + 1;) {
+    it->second = std::max(it->second, next->second);
+    next = intervals_.erase(next);
   }
-  intervals_.emplace_hint(it, first, last);
+}
+
+bool VersionSet::touches(std::int64_t first, std::int64_t last) const {
+  const auto after = intervals_.upper_bound(last + 1);
+  return after != intervals_.begin() && std::prev(after)->second >= first - 1;
 }
 
 void VersionSet::remove(std::int64_t first, std::int64_t last) {

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 #include <optional>
-#include <string_view>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/lattice.hpp"
@@ -92,8 +92,8 @@ struct Answer {
 struct Path {
   std::string id;
   std::string robot;
-  std::string status;   ///< "OK" or a reason, see planner/README.md
-  std::string message;  ///< for a person
+  std::string status;                   ///< "OK" or a reason, see planner/README.md
+  std::string message;                  ///< for a person
   std::vector<Eigen::Vector3d> points;  ///< map frame, z on the floor of the band
   double length = 0.0;
   double least_clearance = 0.0;

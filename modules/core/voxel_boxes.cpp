@@ -40,7 +40,8 @@ std::vector<VoxelBox> to_boxes(std::span<const VoxelIndex> voxels) {
     return key(a) < key(b);
   });
   return joined(boxes, [](const VoxelBox& a, const VoxelBox& b) {
-    return a.max.x + 1 == b.min.x && a.min.y == b.min.y && a.max.y == b.max.y && a.min.z == b.min.z && a.max.z == b.max.z;
+    return a.max.x + 1 == b.min.x && a.min.y == b.min.y && a.max.y == b.max.y && a.min.z == b.min.z &&
+           a.max.z == b.max.z;
   });
 }
 

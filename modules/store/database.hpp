@@ -32,6 +32,17 @@ class Statement {
   /// Fetches the next row: true if there is one, false at the end.
   [[nodiscard]] Result<bool> step();
 
+  /// Calls `visit()` for each row that is left.
+  template <class Visit>
+  [[nodiscard]] Result<void> for_each_row(Visit&& visit) {
+    for (;;) {
+      const Result<bool> row = step();
+      if (!row) return tl::unexpected(row.error());
+      if (!*row) return {};
+      visit();
+    }
+  }
+
   /// For statements that answer no rows: binds, runs to the end, and is ready for the next time.
   template <class... Values>
   [[nodiscard]] Result<void> run(const Values&... values) {

@@ -1,0 +1,73 @@
+#include "merge/layered_map.hpp"
+
+#include <cassert>
+#include <utility>
+
+namespace concord {
+
+void LayeredMap::begin_layer(const std::string& agent, const std::string& frame_id, int weight) {
+  remove_layer(agent);
+  AgentLayer& layer = layers_[agent];
+  layer.frame_id = frame_id;
+  layer.weight = weight;
+}
+
+void LayeredMap::set_brick(const std::string& agent, BrickIndex index, Brick brick) {
+  const auto it = layers_.find(agent);
+  assert(it != layers_.end());
+  AgentLayer& layer = it->second;
+  if (const Brick* before = layer.map.find(index)) {
+    layer.known -= before->known_count();
+    layer.occupied -= before->occupied_count();
+  }
+  layer.known += brick.known_count();
+  layer.occupied += brick.occupied_count();
+  if (layer.map.set(index, std::move(brick)) && layer.lattice) layer.lattice->touch(index, dirty_);
+}
+
+void LayeredMap::place(const std::string& agent, const Transform& T_map_agent) {
+  const auto it = layers_.find(agent);
+  assert(it != layers_.end());
+  AgentLayer& layer = it->second;
+  if (layer.T_map_agent && layer.T_map_agent->matrix() == T_map_agent.matrix()) return;
+  mark(layer);
+  layer.T_map_agent = T_map_agent;
+  layer.lattice.emplace(T_map_agent, resolution_);
+  mark(layer);
+}
+
+void LayeredMap::remove_layer(const std::string& agent) {
+  const auto it = layers_.find(agent);
+  if (it == layers_.end()) return;
+  mark(it->second);
+  layers_.erase(it);
+}
+
+/// All that the layer contributes to, where it lies now.
+void LayeredMap::mark(const AgentLayer& layer) {
+  if (!layer.lattice) return;
+  for (const TileIndex tile : layer.map.sorted_tiles()) layer.lattice->touch(tile, dirty_);
+}
+
+LayeredMap::Changes LayeredMap::refold() {
+  Changes changes;
+  if (dirty_.empty()) return changes;
+  std::vector<Layer> aligned;
+  for (const auto& [agent, layer] : layers_) {
+    if (layer.T_map_agent) aligned.push_back({&layer.map, *layer.T_map_agent, layer.weight});
+  }
+  for (FoldedBrick& folded : fold(aligned, edits_.pins(), policy_, resolution_, std::exchange(dirty_, {}))) {
+    if (merged_.values.set(folded.index, std::move(folded.values))) changes.map.push_back(folded.index);
+    if (merged_.conflicts.set(folded.index, Brick::uniform(folded.conflicts, kOccupied))) {
+      changes.conflicts.push_back(folded.index);
+    }
+  }
+  return changes;
+}
+
+const LayeredMap::AgentLayer* LayeredMap::find(const std::string& agent) const {
+  const auto it = layers_.find(agent);
+  return it != layers_.end() ? &it->second : nullptr;
+}
+
+}  // namespace concord

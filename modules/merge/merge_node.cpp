@@ -1,0 +1,269 @@
+#include "merge/merge_node.hpp"
+
+#include <stdexcept>
+
+#include <spdlog/spdlog.h>
+
+namespace concord {
+namespace {
+
+constexpr std::int64_t kRefoldPeriod = 20'000;
+constexpr std::int64_t kAgentsPeriod = 1'000'000;
+/// After a restart the map is held back until it is whole again, so that nobody sees it shrink; but not for ever.
+constexpr std::int64_t kLongestStart = 10'000'000;
+const std::string kStreamPrefix = "out/agent/";
+
+BrickSender::Config stream_config(const NodeContext& context, const std::string& stream) {
+  return {stream, context.site.resolution, context.site.stream.bytes_per_second, context.boot_id};
+}
+
+/// "out/agent/ID/bricks" and "in/ID/pose" name their agent between prefix and last slash.
+std::string agent_in(const std::string& channel, std::size_t prefix) {
+  return channel.substr(prefix, channel.rfind('/') - prefix);
+}
+
+}  // namespace
+
+MergeNode::MergeNode(const NodeContext& context)
+    : context_(context),
+      store_(context.site.state / "merge.db", context.site.resolution),
+      catalogue_(context.site.state / "maps"),
+      layers_(context.site.resolution, context.site.merge.policy),
+      map_stream_(context.bus, context.counters, stream_config(context, "out/map"), layers_.map()),
+      conflict_stream_(context.bus, context.counters, stream_config(context, "out/conflicts"), layers_.conflicts()),
+      answers_(context.bus),
+      started_(context.bus.now()) {
+  restore();
+  listen_to_agents();
+  listen_to_people();
+  context_.bus.every(kRefoldPeriod, [this] { refold_and_send(); });
+  context_.bus.every(kAgentsPeriod, [this] { publish_agents(); });
+}
+
+void MergeNode::restore() {
+  const auto transforms = store_.transforms();
+  if (!transforms) throw std::runtime_error(transforms.error().message);
+  for (const MergeStore::Placed& placed : *transforms) {
+    agents_[placed.agent].T_map_frame[placed.frame_id] = placed.T_map_agent;
+    awaited_.insert(placed.agent);
+  }
+  const auto edits = store_.edits();
+  if (!edits) throw std::runtime_error(edits.error().message);
+  for (const EditRequest& edit : *edits) layers_.apply(edit);
+  spdlog::info("restored {} transforms and {} edits", transforms->size(), edits->size());
+}
+
+void MergeNode::listen_to_agents() {
+  listen<BrickPacket>(context_.bus, context_.counters, context_.process, kStreamPrefix + "[^/]+/bricks",
+                      [this](const std::string& channel, const BrickPacket& packet) {
+                        if (Agent* agent = agent_of_channel(channel)) agent->stream->on_packet(packet);
+                      });
+  listen<BrickDigest>(context_.bus, context_.counters, context_.process, kStreamPrefix + "[^/]+/digest",
+                      [this](const std::string& channel, const BrickDigest& digest) {
+                        if (Agent* agent = agent_of_channel(channel)) agent->stream->on_digest(digest);
+                      });
+  listen<AgentPose>(context_.bus, context_.counters, context_.process, "in/[^/]+/pose",
+                    [this](const std::string& channel, AgentPose pose) { on_pose(channel, std::move(pose)); });
+}
+
+void MergeNode::listen_to_people() {
+  listen<TransformRequest>(context_.bus, context_.counters, context_.process, "in/transform",
+                           [this](const std::string&, const TransformRequest& request) { on_transform(request); });
+  listen<MapRequest>(context_.bus, context_.counters, context_.process, "in/map_request",
+                     [this](const std::string&, const MapRequest& request) { on_map_request(request); });
+  context_.bus.subscribe("in/edit", [this](const std::string& channel, std::span<const std::uint8_t> bytes) {
+    const auto request = decode_edit(bytes, context_.site.resolution);
+    if (request) return on_edit(*request);
+    context_.counters.refused(channel, request.error().error);
+    if (!request.error().id.empty()) deny(request.error().id, request.error().error);
+  });
+}
+
+MergeNode::Agent* MergeNode::agent_of_channel(const std::string& channel) {
+  const std::string id = agent_in(channel, kStreamPrefix.size());
+  const auto it = agents_.find(id);
+  if (it != agents_.end() && it->second.stream) return &it->second;
+  if (!is_name(id) || static_cast<std::int64_t>(agents_.size()) >= context_.site.ingest.max_agents) {
+    context_.counters.refused(channel, {Code::kBadName, "no room for an agent of this name"});
+    return nullptr;
+  }
+  Agent& agent = agents_[id];
+  open_stream(id, agent);
+  return &agent;
+}
+
+void MergeNode::open_stream(const std::string& id, Agent& agent) {
+  BrickReceiver::Events events;
+  events.on_frame = [this, id](const std::string& frame_id) {
+    layers_.begin_layer(id, frame_id, context_.site.agent(id).weight);
+    enter_frame(id, agents_[id], frame_id);
+  };
+  events.on_brick = [this, id](BrickIndex index, Brick brick) { layers_.set_brick(id, index, std::move(brick)); };
+  events.on_end = [this, id] { forget(id); };
+  agent.stream = std::make_unique<BrickReceiver>(context_.bus, context_.counters,
+                                                 BrickReceiver::Config{kStreamPrefix + id, context_.site.resolution},
+                                                 std::move(events));
+}
+
+/// A transform holds for the frame it was found in; a frame that nobody has aligned waits outside the map.
+void MergeNode::enter_frame(const std::string& id, Agent& agent, const std::string& frame_id) {
+  agent.frame_id = frame_id;
+  const auto T = agent.T_map_frame.find(frame_id);
+  if (T != agent.T_map_frame.end() && layers_.find(id) != nullptr) layers_.place(id, T->second);
+}
+
+/// The agent was removed: what it said and where people put it are void.
+void MergeNode::forget(const std::string& id) {
+  layers_.remove_layer(id);
+  awaited_.erase(id);
+  Agent& agent = agents_[id];
+  agent.frame_id.clear();
+  agent.pose.reset();
+  agent.T_map_frame.clear();
+  if (const auto done = store_.forget_agent(id); !done) context_.counters.refused("store", done.error());
+}
+
+void MergeNode::on_pose(const std::string& channel, AgentPose pose) {
+  pose.agent = agent_in(channel, 3);
+  if (!is_name(pose.agent)) {
+    return context_.counters.refused(channel, {Code::kBadName, "no agent can have this name"});
+  }
+  const auto known = agents_.find(pose.agent);
+  if (known == agents_.end() && static_cast<std::int64_t>(agents_.size()) >= context_.site.ingest.max_agents) {
+    return context_.counters.refused("in/pose", {Code::kTooLarge, "no room for another agent"});
+  }
+  Agent& agent = agents_[pose.agent];
+  if (agent.frame_id.empty() || !agent.stream) enter_frame(pose.agent, agent, pose.frame_id);
+  if (pose.frame_id != agent.frame_id) {
+    return context_.counters.refused(channel, {Code::kBadFrame, "pose is in a frame other than the submap's"});
+  }
+  if (agent.pose && agent.pose->frame_id == pose.frame_id && pose.utime <= agent.pose->utime) {
+    return context_.counters.refused(channel, {Code::kStale, "pose is not newer than the last"});
+  }
+  agent.pose = std::move(pose);
+  publish_pose(agent.pose->agent, agent);
+}
+
+void MergeNode::on_transform(const TransformRequest& request) {
+  if (answers_.repeat(request.id)) return;
+  const auto it = agents_.find(request.agent);
+  if (it == agents_.end() || it->second.frame_id.empty()) {
+    return deny(request.id, {Code::kNoAgent, "no agent " + request.agent + " has been heard; see: concord agents"});
+  }
+  Agent& agent = it->second;
+  TransformRequest stored = request;
+  if (stored.frame_id.empty()) stored.frame_id = agent.frame_id;
+  if (stored.frame_id != agent.frame_id) {
+    return deny(request.id, {Code::kBadFrame, request.agent + " is in frame " + agent.frame_id + " now"});
+  }
+  if (const auto done = store_.put_transform(stored, context_.bus.now()); !done) return deny(request.id, done.error());
+  agent.T_map_frame[stored.frame_id] = stored.T_map_agent;
+  enter_frame(request.agent, agent, stored.frame_id);
+  refold_and_send();
+  grant(request.id, map_stream_.revision(), 1, request.agent + " is placed");
+  publish_pose(request.agent, agent);
+}
+
+void MergeNode::on_edit(const EditRequest& request) {
+  const auto count = static_cast<std::int64_t>(request.voxels.size());
+  if (const auto before = layers_.edits().revision_of(request.id)) {
+    return grant(request.id, *before, count, "this edit was applied before");
+  }
+  if (const auto done = store_.put_edit(request); !done) return deny(request.id, done.error());
+  layers_.apply(request);
+  refold_and_send();
+  grant(request.id, layers_.edits().revision(), count, "pinned");
+}
+
+void MergeNode::on_map_request(const MapRequest& request) {
+  if (request.op == MapRequest::Op::kLoad) return;  // ingest's
+  if (request.op == MapRequest::Op::kList) return list(request);
+  if (!answers_.repeat(request.id)) save(request);
+}
+
+void MergeNode::save(const MapRequest& request) {
+  refold_and_send();
+  const auto bytes =
+      catalogue_.save(layers_.map(), context_.site.resolution, request.map, request.format, request.overwrite);
+  if (!bytes) return deny(request.id, bytes.error());
+  grant(request.id, map_stream_.revision(), *bytes, "saved " + request.map + "." + request.format);
+}
+
+void MergeNode::list(const MapRequest& request) {
+  const auto files = catalogue_.list();
+  if (!files) return deny(request.id, files.error());
+  context_.bus.publish("out/map_list", encode(MapList{request.id, *files}, context_.bus.now()));
+  grant(request.id, 0, static_cast<std::int64_t>(files->size()), "listed");
+}
+
+void MergeNode::refold_and_send() {
+  const LayeredMap::Changes changes = layers_.refold();
+  if (!streaming_) return start_map_streams_when_ready();
+  for (const BrickIndex index : changes.map) map_stream_.touch(index);
+  for (const BrickIndex index : changes.conflicts) conflict_stream_.touch(index);
+  if (!changes.map.empty()) map_stream_.send_now();
+  if (!changes.conflicts.empty()) conflict_stream_.send_now();
+}
+
+void MergeNode::start_map_streams_when_ready() {
+  if (!has_all_that_was_aligned() && context_.bus.now() - started_ < kLongestStart) return;
+  map_stream_.begin("map");
+  conflict_stream_.begin("map");
+  streaming_ = true;
+}
+
+bool MergeNode::has_all_that_was_aligned() const {
+  for (const std::string& id : awaited_) {
+    const auto it = agents_.find(id);
+    if (it == agents_.end() || !it->second.stream || !it->second.stream->synced()) return false;
+  }
+  return true;
+}
+
+void MergeNode::publish_agents() {
+  AgentList list{context_.bus.now(), {}};
+  for (const auto& [id, agent] : agents_) {
+    if (agent.frame_id.empty()) continue;
+    AgentState state;
+    state.id = id;
+    state.kind = context_.site.agent(id).kind;
+    state.frame_id = agent.frame_id;
+    state.weight = context_.site.agent(id).weight;
+    const auto T = agent.T_map_frame.find(agent.frame_id);
+    state.aligned = T != agent.T_map_frame.end();
+    if (state.aligned) state.T_map_agent = T->second;
+    if (const LayeredMap::AgentLayer* layer = layers_.find(id)) {
+      state.known = layer->known;
+      state.occupied = layer->occupied;
+    }
+    if (agent.stream) {
+      state.revision = agent.stream->revision();
+      state.synced = agent.stream->synced();
+    }
+    list.agents.push_back(std::move(state));
+  }
+  context_.bus.publish("out/agents", encode(list));
+  context_.counters.set("agents", static_cast<std::int64_t>(list.agents.size()));
+  context_.counters.set("map_bricks", static_cast<std::int64_t>(layers_.map().brick_count()));
+  context_.counters.set("map_revision", map_stream_.revision());
+  context_.counters.set("edit_revision", layers_.edits().revision());
+  context_.counters.set("bytes_sent", map_stream_.bytes_sent() + conflict_stream_.bytes_sent());
+}
+
+void MergeNode::publish_pose(const std::string& id, const Agent& agent) {
+  const auto T = agent.T_map_frame.find(agent.frame_id);
+  if (!agent.pose || T == agent.T_map_frame.end() || agent.pose->frame_id != agent.frame_id) return;
+  const MapPose pose{agent.pose->utime, id, T->second * agent.pose->T_agent_base};
+  context_.bus.publish("out/pose/" + id, encode(pose));
+}
+
+void MergeNode::grant(const std::string& id, std::int64_t revision, std::int64_t count, const std::string& message) {
+  answers_.give({id, context_.process, true, "OK", message, revision, count});
+}
+
+void MergeNode::deny(const std::string& id, const Error& error) {
+  context_.counters.refused("request", error);
+  answers_.give({id, context_.process, false, name(error.code), error.message, 0, 0});
+}
+
+}  // namespace concord
