@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "core/brick.hpp"
+#include "noise.hpp"
 #include "station.hpp"
 #include "system_test.hpp"
 
@@ -14,24 +15,6 @@ namespace {
 constexpr double kResolution = 0.05;
 constexpr int kLossPerMille = 50;
 const std::string kStream = "in/robot1";
-
-DenseBrick noise(std::uint32_t& state) {
-  DenseBrick dense;
-  for (LogOdds& value : dense) {
-    state = state * 1664525U + 1013904223U;
-    value = (state >> 24) < 100 ? static_cast<LogOdds>((state >> 12) % 4000) : kUnknown;
-  }
-  return dense;
-}
-
-/// A slab of edge * edge bricks that no codec can shorten much.
-BrickMap noisy_map(int edge, std::uint32_t seed) {
-  BrickMap map;
-  for (int x = 0; x < edge; ++x) {
-    for (int y = 0; y < edge; ++y) map.set({x, y, 0}, Brick::from_dense(noise(seed)));
-  }
-  return map;
-}
 
 bool is_copied(StreamSource& source, const StreamCopy& copy) {
   return copy.synced() && copy.receiver().revision() == source.sender().revision() && copy.map() == source.map();
