@@ -7,7 +7,7 @@ SimulatedAgent::SimulatedAgent(const RayCaster& world, AgentKind kind, std::uint
 
 std::optional<Moment> SimulatedAgent::next() {
   Moment moment;
-  moment.time = scans_ / sensor_.scans_per_second;
+  moment.time = next_time();
   if (moment.time > trajectory_.duration()) return std::nullopt;
   ++scans_;
 

@@ -26,6 +26,8 @@ class SimulatedAgent {
   /// Nothing after the end of its way.
   [[nodiscard]] std::optional<Moment> next();
 
+  /// Seconds from its start to the next moment.
+  [[nodiscard]] double next_time() const { return scans_ / sensor_.scans_per_second; }
   [[nodiscard]] const Sensor& sensor() const { return sensor_; }
   [[nodiscard]] double duration() const { return trajectory_.duration(); }
 

@@ -1,0 +1,115 @@
+#include "agent/sim/sim_node.hpp"
+
+#include <algorithm>
+#include <csignal>
+
+#include <spdlog/spdlog.h>
+
+#include "core/scan.hpp"
+
+namespace concord {
+namespace {
+
+constexpr std::int64_t kStep = 5'000;
+constexpr std::int64_t kPublishPeriod = 500'000;
+constexpr std::int64_t kLinger = 3'000'000;  // a digest a second: time for every receiver to ask for what it lacks
+
+}  // namespace
+
+SimNode::SimNode(const NodeContext& context, const Config& config)
+    : bus_(context.bus),
+      counters_(context.counters),
+      config_(config),
+      resolution_(context.site.resolution),
+      boot_id_(context.boot_id),
+      world_(make_warehouse(config.seed)) {
+  if (config.kind == AgentKind::kCamera) {
+    cloud_out_.emplace(bus_, counters_, config.agent, [this] { begin(); });
+  } else {
+    const SubmapPublisher::Config stream{config.agent, resolution_, context.site.stream.bytes_per_second, boot_id_};
+    submap_out_.emplace(bus_, counters_, stream, [this] { begin(); });
+  }
+  begin();
+  bus_.every(kStep, [this] { step(); });
+  bus_.every(kPublishPeriod, [this] { publish_changes(); });
+}
+
+void SimNode::begin() {
+  const std::uint64_t own = config_.seed * 1000 + static_cast<std::uint64_t>(config_.kind) * 100;
+  self_.emplace(world_, config_.kind, own + static_cast<std::uint64_t>(frames_));
+  ++frames_;
+  const std::string frame_id = "f" + std::to_string(boot_id_) + "-" + std::to_string(frames_);
+  if (submap_out_) submap_out_->begin_frame(frame_id);
+  if (cloud_out_) cloud_out_->begin_frame(frame_id);
+  began_ = bus_.now();
+  scans_ = 0;
+  submap_.clear();
+  changed_.clear();
+  idle_since_ = 0;
+  const Transform T_map_agent = start_pose(config_.kind);
+  const Eigen::Quaterniond q(T_map_agent.linear());
+  const Eigen::Vector3d& p = T_map_agent.translation();
+  spdlog::info("frame {} begins; true T_map_agent {} {} {}  {} {} {} {}", frame_id, p.x(), p.y(), p.z(), q.x(), q.y(),
+               q.z(), q.w());
+}
+
+void SimNode::step() {
+  // One moment a step, so that messages are heard in between however far it has fallen behind.
+  const double simulated = static_cast<double>(bus_.now() - began_) * 1e-6 * config_.speed;
+  if (self_->next_time() <= simulated) {
+    if (const std::optional<Moment> moment = self_->next()) take(*moment);
+  }
+  report();
+  if (config_.leave) leave_when_all_is_sent();
+}
+
+void SimNode::take(const Moment& moment) {
+  ++scans_;
+  const std::int64_t utime = bus_.now();
+  if (submap_out_) {
+    map(moment);
+    submap_out_->publish_pose(moment.T_agent_base, utime);
+  } else {
+    cloud_out_->publish(moment.T_agent_sensor, self_->sensor().trusted_range, moment.points, utime);
+    cloud_out_->publish_pose(moment.T_agent_base, utime);
+  }
+}
+
+void SimNode::map(const Moment& moment) {
+  Result<CheckedScan> scan =
+      checked({moment.T_agent_sensor, self_->sensor().trusted_range, moment.points}, resolution_);
+  if (!scan) return counters_.refused("scan", scan.error());
+  const Result<std::vector<BrickIndex>> changed = integrate(submap_, resolution_, scan->scan);
+  if (!changed) return counters_.refused("scan", changed.error());
+  changed_.insert(changed->begin(), changed->end());
+}
+
+void SimNode::publish_changes() {
+  if (!submap_out_) return;
+  for (const BrickIndex index : changed_) {
+    const Brick* brick = submap_.find(index);
+    submap_out_->publish_brick(index, brick != nullptr ? *brick : Brick());
+  }
+  changed_.clear();
+}
+
+void SimNode::report() {
+  const double share = std::min(self_->next_time() / self_->duration(), 1.0);
+  counters_.set("progress_percent", static_cast<std::int64_t>(100 * share));
+  counters_.set("scans", scans_);
+  counters_.set("frames", frames_);
+  counters_.set("bytes_sent", submap_out_ ? submap_out_->bytes_sent() : cloud_out_->bytes_sent());
+}
+
+void SimNode::leave_when_all_is_sent() {
+  const bool done = self_->next_time() > self_->duration() && changed_.empty() && (!submap_out_ || submap_out_->idle());
+  if (!done) {
+    idle_since_ = 0;
+  } else if (idle_since_ == 0) {
+    idle_since_ = bus_.now();
+  } else if (bus_.now() - idle_since_ > kLinger) {
+    std::raise(SIGTERM);
+  }
+}
+
+}  // namespace concord
