@@ -1,0 +1,21 @@
+#include <tuple>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+
+#include "planner/planner_node.hpp"
+
+int main(int argc, char** argv) {
+  using concord::NodeContext;
+  using concord::PlannerNode;
+  using concord::Site;
+  return concord::run_process(
+      "planner", argc, argv,
+      [](const NodeContext& context) -> std::shared_ptr<void> { return std::make_shared<PlannerNode>(context); },
+      [](CLI::App& app, Site& site) {
+        app.add_option_function<std::pair<double, double>>(
+            "--band",
+            [&site](const std::pair<double, double>& band) { std::tie(site.planner.zmin, site.planner.zmax) = band; },
+            "ZMIN ZMAX: height band that is projected, map z in metres; overrides the site file");
+      });
+}

@@ -1,0 +1,82 @@
+#include "planner/planner_node.hpp"
+
+namespace concord {
+namespace {
+
+constexpr std::int64_t kTick = 50'000;  ///< map changes are gathered for so long, microseconds
+
+Grid make_grid(const Site& site) {
+  const Result<Band> band = make_band(site.planner.zmin, site.planner.zmax, site.resolution);
+  if (!band) throw ConfigError("planner: " + band.error().message);
+  return {site.resolution, *band, site.planner.free_share};
+}
+
+}  // namespace
+
+PlannerNode::PlannerNode(const NodeContext& context)
+    : context_(context),
+      planner_(make_grid(context.site)),
+      sender_(context.bus, context.counters,
+              {.stream = "out/grid",
+               .resolution = context.site.resolution,
+               .bytes_per_second = context.site.stream.bytes_per_second,
+               .boot_id = context.boot_id},
+              planner_.grid().cells()),
+      receiver_(context.bus, context.counters, {.stream = "out/map", .resolution = context.site.resolution},
+                {.on_frame = [this](const std::string& frame_id) { on_frame(frame_id); },
+                 .on_brick = [this](BrickIndex index, Brick brick) { planner_.set_brick(index, std::move(brick)); },
+                 .on_end = [this] { planner_.clear_map(); }}) {
+  Bus& bus = context_.bus;
+  Counters& counters = context_.counters;
+  const std::string& self = context_.process;
+  listen<BrickPacket>(bus, counters, self, "out/map/bricks",
+                      [this](const std::string&, const BrickPacket& packet) { receiver_.on_packet(packet); });
+  listen<BrickDigest>(bus, counters, self, "out/map/digest",
+                      [this](const std::string&, const BrickDigest& digest) { receiver_.on_digest(digest); });
+  listen<MapPose>(bus, counters, self, "out/pose/.*", [this](const std::string& channel, const MapPose& pose) {
+    if (!planner_.set_pose(pose.agent, pose.T_map_base.translation().head<2>())) {
+      context_.counters.refused(channel, {Code::kTooLarge, "poses of more robots than are kept"});
+    }
+  });
+  listen<PathRequest>(bus, counters, self, "in/path_request",
+                      [this](const std::string&, const PathRequest& request) { on_request(request); });
+  bus.every(kTick, [this] {
+    project();
+    replan();
+  });
+}
+
+/// What was known before is void: the grid empties, and its stream begins anew in the new frame.
+void PlannerNode::on_frame(const std::string& frame_id) {
+  planner_.clear_map();
+  planner_.project();
+  sender_.begin(frame_id);
+}
+
+void PlannerNode::project() {
+  for (const BrickIndex column : planner_.project()) sender_.touch(column);
+}
+
+void PlannerNode::replan() {
+  for (const Path& path : planner_.replan(moment())) publish(path);
+  context_.counters.set("active_paths", static_cast<std::int64_t>(planner_.active_count()));
+}
+
+void PlannerNode::on_request(const PathRequest& request) {
+  project();
+  Path path = planner_.request(request, context_.site.agent(request.robot).radius, moment());
+  const bool ok = path.status == name(Reason::kOk);
+  if (!ok && !receiver_.synced()) path.message += "; the map has not fully arrived yet";
+  publish(path);
+  answer(context_.bus, {path.id, context_.process, ok, path.status, path.message, path.map_revision,
+                        static_cast<std::int64_t>(path.points.size())});
+}
+
+void PlannerNode::publish(const Path& path) {
+  context_.counters.add("paths." + path.status);
+  context_.bus.publish("out/path/" + path.robot, encode(path));
+}
+
+Planner::Moment PlannerNode::moment() const { return {receiver_.revision(), context_.bus.now()}; }
+
+}  // namespace concord
