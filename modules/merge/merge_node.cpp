@@ -74,8 +74,9 @@ void MergeNode::listen_to_people() {
   context_.bus.subscribe("in/edit", [this](const std::string& channel, std::span<const std::uint8_t> bytes) {
     const auto request = decode_edit(bytes, context_.site.resolution);
     if (request) return on_edit(*request);
-    context_.counters.refused(channel, request.error().error);
-    if (!request.error().id.empty()) deny(request.error().id, request.error().error);
+    const auto& [error, id] = request.error();
+    context_.counters.refused(channel, error);
+    if (!id.empty()) answers_.give({id, context_.process, false, name(error.code), error.message, 0, 0});
   });
 }
 

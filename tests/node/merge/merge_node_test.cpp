@@ -1,0 +1,227 @@
+#include "merge/merge_node.hpp"
+
+#include <cstdlib>
+
+#include <gtest/gtest.h>
+
+#include "bus/lockstep_bus.hpp"
+#include "core/octomap_reader.hpp"
+#include "store/whole_file.hpp"
+
+namespace concord {
+namespace {
+
+/// A merge node with its surroundings: an agent's stream as ingest sends it, and somebody who hears the map.
+class MergeNodeTest : public ::testing::Test {
+ protected:
+  MergeNodeTest() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "concord-merge-XXXXXX").string();
+    site_.state = ::mkdtemp(pattern.data());
+    site_.resolution = 0.1;
+    start();
+  }
+  ~MergeNodeTest() override { std::filesystem::remove_all(site_.state); }
+
+  /// Everything begins anew but the state folder and the time.
+  void start() {
+    const std::int64_t time = bus_ ? bus_->now() + 1'000'000 : 1'000'000'000;
+    agent_stream_.reset();
+    listener_.reset();
+    node_.reset();
+    bus_ = std::make_unique<LockstepBus>(time);
+    heard_.clear();
+    answers_.clear();
+    node_ = std::make_unique<MergeNode>(NodeContext{*bus_, counters_, site_, "merge", time});
+    listen_as_planner();
+    bus_->subscribe("out/answer",
+                    [this](const std::string&, auto bytes) { answers_.push_back(*decode<Answer>(bytes)); });
+    bus_->subscribe("out/pose/.*",
+                    [this](const std::string&, auto bytes) { poses_.push_back(*decode<MapPose>(bytes)); });
+    bus_->subscribe("out/agents", [this](const std::string&, auto bytes) { agents_ = *decode<AgentList>(bytes); });
+    bus_->subscribe("out/map_list", [this](const std::string&, auto bytes) { list_ = *decode<MapList>(bytes); });
+    agent_stream_ = std::make_unique<BrickSender>(
+        *bus_, counters_, BrickSender::Config{"out/agent/robot1", site_.resolution, 5e6, time}, agent_map_);
+  }
+
+  void listen_as_planner() {
+    BrickReceiver::Events events;
+    events.on_frame = [this](const std::string&) { heard_.clear(); };
+    events.on_brick = [this](BrickIndex index, Brick brick) { heard_.set(index, std::move(brick)); };
+    listener_ =
+        std::make_unique<BrickReceiver>(*bus_, counters_, BrickReceiver::Config{"out/map", site_.resolution}, events);
+    bus_->subscribe("out/map/bricks",
+                    [this](const std::string&, auto bytes) { listener_->on_packet(*decode<BrickPacket>(bytes)); });
+    bus_->subscribe("out/map/digest",
+                    [this](const std::string&, auto bytes) { listener_->on_digest(*decode<BrickDigest>(bytes)); });
+  }
+
+  void run(std::int64_t microseconds = 3'000'000) { bus_->advance_to(bus_->now() + microseconds); }
+
+  void send_wall() {
+    VoxelMask mask{};
+    mask[0] = 0xFF;
+    agent_map_.set({2, 0, 0}, Brick::uniform(mask, kOccupied));
+    agent_stream_->begin("frame1");
+    run();
+  }
+
+  Answer ask(const std::string& channel, const Bytes& bytes) {
+    answers_.clear();
+    bus_->publish(channel, bytes);
+    bus_->deliver();
+    return answers_.empty() ? Answer{} : answers_.back();
+  }
+  Answer place(const std::string& id, const Transform& T) {
+    return ask("in/transform", encode(TransformRequest{id, "eva", "robot1", "", T}, bus_->now()));
+  }
+  Answer add(const std::string& id, VoxelIndex voxel) {
+    return ask("in/edit",
+               encode(EditRequest{id, "eva", EditRequest::Op::kAdd, {voxel}, bus_->now()}, site_.resolution));
+  }
+
+  Site site_;
+  Counters counters_;
+  std::unique_ptr<LockstepBus> bus_;
+  std::unique_ptr<MergeNode> node_;
+  BrickMap agent_map_;
+  std::unique_ptr<BrickSender> agent_stream_;
+  std::unique_ptr<BrickReceiver> listener_;
+  BrickMap heard_;
+  std::vector<Answer> answers_;
+  std::vector<MapPose> poses_;
+  AgentList agents_;
+  MapList list_;
+};
+
+TEST_F(MergeNodeTest, AnAgentWaitsOutsideUntilItIsAligned) {
+  send_wall();
+  EXPECT_TRUE(node_->map().empty());
+  ASSERT_EQ(agents_.agents.size(), 1u);
+  EXPECT_FALSE(agents_.agents[0].aligned);
+  EXPECT_TRUE(agents_.agents[0].synced);
+  EXPECT_EQ(agents_.agents[0].occupied, 8);
+
+  Transform T = Transform::Identity();
+  T.translation().z() = 0.8;
+  EXPECT_TRUE(place("t1", T).ok);
+  run();
+  ASSERT_NE(node_->map().find(BrickIndex{2, 0, 1}), nullptr);
+  EXPECT_EQ(digest(heard_), digest(node_->map())) << "what the planner hears is the map";
+  EXPECT_TRUE(agents_.agents[0].aligned);
+}
+
+TEST_F(MergeNodeTest, WhatPeopleMadeOutlivesARestart) {
+  send_wall();
+  ASSERT_TRUE(place("t1", Transform::Identity()).ok);
+  ASSERT_TRUE(add("e1", {100, 100, 1}).ok);
+  run();
+  const std::uint64_t before = digest(node_->map());
+  start();
+  EXPECT_TRUE(heard_.empty());
+  agent_stream_->begin("frame1");
+  run();
+  EXPECT_EQ(digest(node_->map()), before);
+  EXPECT_EQ(digest(heard_), before);
+  EXPECT_EQ(add("e1", {100, 100, 1}).revision, 1) << "an edit sent again after the restart is the same edit";
+}
+
+TEST_F(MergeNodeTest, TheMapIsHeldBackUntilItIsWholeAgain) {
+  send_wall();
+  ASSERT_TRUE(place("t1", Transform::Identity()).ok);
+  start();
+  run(2'000'000);
+  EXPECT_FALSE(listener_->heard()) << "robot1 was aligned and has not been heard yet";
+  run(10'000'000);
+  EXPECT_TRUE(listener_->heard()) << "but not for ever";
+}
+
+TEST_F(MergeNodeTest, AnEditSentTwiceIsOneEdit) {
+  EXPECT_EQ(add("e1", {0, 0, 0}).revision, 1);
+  EXPECT_EQ(add("e1", {0, 0, 0}).revision, 1);
+  EXPECT_EQ(add("e2", {0, 0, 1}).revision, 2);
+  run();
+  EXPECT_EQ(node_->map().at({0, 0, 0}), kPinnedOccupied);
+  EXPECT_EQ(heard_.known_count(), 2u);
+}
+
+TEST_F(MergeNodeTest, RefusesWhatCannotBe) {
+  EXPECT_EQ(place("t1", Transform::Identity()).code, "NO_AGENT");
+  send_wall();
+  const Bytes other_frame =
+      encode(TransformRequest{"t2", "eva", "robot1", "frame0", Transform::Identity()}, bus_->now());
+  EXPECT_EQ(ask("in/transform", other_frame).code, "BAD_FRAME");
+  const Bytes other_resolution = encode(EditRequest{"e1", "eva", EditRequest::Op::kAdd, {{0, 0, 0}}, 0}, 0.2);
+  EXPECT_EQ(ask("in/edit", other_resolution).code, "RES_MISMATCH");
+  EXPECT_EQ(counters_.get("refused.in/edit.RES_MISMATCH"), 1);
+  EXPECT_TRUE(ask("in/edit", Bytes(10, 7)).id.empty());
+  EXPECT_EQ(counters_.get("refused.in/edit.MALFORMED"), 1);
+}
+
+TEST_F(MergeNodeTest, ANewFrameIsUnalignedAndLeavesNoGhost) {
+  send_wall();
+  ASSERT_TRUE(place("t1", Transform::Identity()).ok);
+  run();
+  ASSERT_FALSE(heard_.empty());
+  agent_stream_->begin("frame2");
+  run();
+  EXPECT_TRUE(heard_.empty());
+  EXPECT_FALSE(agents_.agents[0].aligned);
+  agent_stream_->begin("frame1");
+  run();
+  EXPECT_FALSE(heard_.empty()) << "the transform of frame1 still holds";
+}
+
+TEST_F(MergeNodeTest, ARemovedAgentIsForgotten) {
+  send_wall();
+  ASSERT_TRUE(place("t1", Transform::Identity()).ok);
+  agent_stream_->end();
+  run();
+  EXPECT_TRUE(heard_.empty());
+  EXPECT_TRUE(agents_.agents.empty());
+  agent_stream_->begin("frame1");
+  run();
+  EXPECT_FALSE(agents_.agents[0].aligned) << "its transform went with it";
+}
+
+TEST_F(MergeNodeTest, ARobotThatSendsOnlyPosesIsAnAgent) {
+  Transform T_agent_base = Transform::Identity();
+  T_agent_base.translation().x() = 1;
+  bus_->publish("in/robot2/pose", encode(AgentPose{"", "odom", T_agent_base, 5}));
+  bus_->deliver();
+  EXPECT_TRUE(poses_.empty()) << "not aligned yet";
+  Transform T = Transform::Identity();
+  T.translation().y() = 2;
+  ASSERT_TRUE(ask("in/transform", encode(TransformRequest{"t1", "eva", "robot2", "", T}, bus_->now())).ok);
+  ASSERT_EQ(poses_.size(), 1u);
+  EXPECT_TRUE(poses_[0].T_map_base.translation().isApprox(Eigen::Vector3d(1, 2, 0)));
+  bus_->publish("in/robot2/pose", encode(AgentPose{"", "odom", T_agent_base, 4}));
+  bus_->deliver();
+  EXPECT_EQ(counters_.get("refused.in/robot2/pose.STALE"), 1);
+}
+
+TEST_F(MergeNodeTest, SavesAndLists) {
+  ASSERT_TRUE(add("e1", {0, 0, 0}).ok);
+  const MapRequest save{"s1", MapRequest::Op::kSave, "hall", "bt", false, ""};
+  EXPECT_TRUE(ask("in/map_request", encode(save, bus_->now())).ok);
+  const MapRequest again{"s2", MapRequest::Op::kSave, "hall", "bt", false, ""};
+  EXPECT_EQ(ask("in/map_request", encode(again, bus_->now())).code, "EXISTS");
+  EXPECT_TRUE(ask("in/map_request", encode(save, bus_->now())).ok) << "the same request is answered as before";
+  EXPECT_TRUE(
+      ask("in/map_request", encode(MapRequest{"l1", MapRequest::Op::kList, "", "", false, ""}, bus_->now())).ok);
+  ASSERT_EQ(list_.files.size(), 1u);
+  EXPECT_EQ(list_.files[0].first, "hall.bt");
+  const auto bytes = read_whole_file(site_.state / "maps/hall.bt", 10'000);
+  ASSERT_TRUE(bytes);
+  EXPECT_EQ(read_octomap_file(*bytes, std::nullopt)->map.occupied_count(), 1u);
+}
+
+TEST_F(MergeNodeTest, AMapOfAnotherResolutionIsNotOpened) {
+  ASSERT_TRUE(add("e1", {0, 0, 0}).ok);
+  node_.reset();
+  Site finer = site_;
+  finer.resolution = 0.05;
+  EXPECT_THROW(MergeNode({*bus_, counters_, finer, "merge", bus_->now()}), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace concord
