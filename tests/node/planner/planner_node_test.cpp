@@ -1,0 +1,190 @@
+#include "planner/planner_node.hpp"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+
+#include "bus/lockstep_bus.hpp"
+
+namespace concord {
+namespace {
+
+constexpr std::int64_t kStart = 1'700'000'000'000'000;
+
+/// 4 x 2 bricks of free space one metre high (0.1 m voxels), 3.2 m by 1.6 m.
+BrickMap hall() {
+  VoxelMask all;
+  all.fill(~std::uint64_t{0});
+  BrickMap map;
+  for (int x = 0; x < 4; ++x) {
+    for (int y = 0; y < 2; ++y) map.set({x, y, 0}, Brick::uniform(all, kFree));
+  }
+  return map;
+}
+
+/// The planner between a merge process that sends the map and a headset that reads everything.
+class PlannerOnTheBus : public testing::Test {
+ protected:
+  PlannerOnTheBus() {
+    listen<BrickPacket>(bus_, counters_, "test", "out/grid/bricks",
+                        [this](const std::string&, const BrickPacket& p) { grid_receiver_.on_packet(p); });
+    listen<BrickDigest>(bus_, counters_, "test", "out/grid/digest",
+                        [this](const std::string&, const BrickDigest& d) { grid_receiver_.on_digest(d); });
+    listen<Path>(bus_, counters_, "test", "out/path/robot1",
+                 [this](const std::string&, const Path& path) { paths_.push_back(path); });
+    listen<Answer>(bus_, counters_, "test", kAnswers,
+                   [this](const std::string&, const Answer& value) { answers_.push_back(value); });
+  }
+
+  static Site make_site() {
+    Site site;
+    site.resolution = 0.1;
+    site.planner.zmin = 0.0;
+    site.planner.zmax = 0.8;
+    site.unlisted.radius = 0.2;
+    return site;
+  }
+
+  void start_planner(std::int64_t boot_id) { node_.emplace(NodeContext{bus_, counters_, site_, "planner", boot_id}); }
+  void run_seconds(double seconds) {
+    bus_.advance_to(bus_.now() + static_cast<std::int64_t>(seconds * 1e6));
+    bus_.deliver();
+  }
+  void set(BrickIndex index, Brick brick) {
+    map_.set(index, std::move(brick));
+    map_sender_.touch(index);
+  }
+  void ask(const std::string& id, std::optional<Eigen::Vector2d> start, bool keep_active) {
+    PathRequest request;
+    request.id = id;
+    request.robot = "robot1";
+    request.start = start;
+    request.goal = {2.8, 0.8};
+    request.keep_active = keep_active;
+    bus_.publish("in/path_request", encode(request, bus_.now()));
+    bus_.deliver();
+  }
+
+  LockstepBus bus_{kStart};
+  Counters counters_;
+  Site site_ = make_site();
+  BrickMap map_ = hall();
+  BrickSender map_sender_{bus_, counters_, {.stream = "out/map", .resolution = 0.1, .boot_id = kStart}, map_};
+  std::optional<PlannerNode> node_;
+  BrickMap grid_;
+  std::vector<Path> paths_;
+  std::vector<Answer> answers_;
+  BrickReceiver grid_receiver_{
+      bus_,
+      counters_,
+      {.stream = "out/grid", .resolution = 0.1},
+      {.on_frame = [this](const std::string&) { grid_.clear(); },
+       .on_brick = [this](BrickIndex index, Brick brick) { grid_.set(index, std::move(brick)); },
+       .on_end = {}}};
+};
+
+TEST_F(PlannerOnTheBus, StreamsTheGridOfTheMap) {
+  start_planner(kStart);
+  map_sender_.begin("map");
+  run_seconds(3);
+  EXPECT_TRUE(node_->map().synced());
+  EXPECT_TRUE(grid_receiver_.synced());
+  EXPECT_EQ(grid_.known_count(), 8U * 64U);
+  EXPECT_TRUE(grid_ == node_->planner().grid().cells());
+  set({1, 1, 0}, Brick());
+  run_seconds(2);
+  EXPECT_EQ(grid_.known_count(), 7U * 64U);
+  map_ = BrickMap();
+  map_sender_.begin("other");
+  run_seconds(3);
+  EXPECT_TRUE(grid_.empty());
+}
+
+TEST_F(PlannerOnTheBus, AnswersAndReplansWhenAWallIsBuilt) {
+  start_planner(kStart);
+  map_sender_.begin("map");
+  run_seconds(2);
+  ask("p1", Eigen::Vector2d(0.4, 0.8), true);
+  ASSERT_EQ(paths_.size(), 1U);
+  ASSERT_EQ(answers_.size(), 1U);
+  EXPECT_EQ(paths_[0].status, "OK");
+  EXPECT_NEAR(paths_[0].length, 2.4, 1e-9);
+  EXPECT_EQ(answers_[0].id, "p1");
+  EXPECT_EQ(answers_[0].process, "planner");
+  EXPECT_TRUE(answers_[0].ok);
+  EXPECT_EQ(answers_[0].code, "OK");
+  EXPECT_EQ(answers_[0].revision, map_sender_.revision());
+
+  DenseBrick dense;
+  dense.fill(kFree);
+  dense[local_of(VoxelIndex{0, 7, 3})] = kPinnedOccupied;  // a post in the middle of the hall
+  set({2, 0, 0}, Brick::from_dense(dense));
+  run_seconds(1);
+  ASSERT_EQ(paths_.size(), 2U);
+  EXPECT_EQ(paths_[1].status, "OK");
+  EXPECT_EQ(paths_[1].plan_number, 1);
+  EXPECT_EQ(paths_[1].map_revision, map_sender_.revision());
+  EXPECT_GT(paths_[1].length, 2.4);
+  EXPECT_GE(paths_[1].least_clearance, 0.2 - 1e-6);
+  EXPECT_EQ(answers_.size(), 1U);
+}
+
+TEST_F(PlannerOnTheBus, SaysWhyThereIsNoPath) {
+  start_planner(kStart);
+  ask("p1", Eigen::Vector2d(0.4, 0.8), false);
+  ASSERT_EQ(answers_.size(), 1U);
+  EXPECT_FALSE(answers_[0].ok);
+  EXPECT_EQ(answers_[0].code, "NO_MAP");
+  map_sender_.begin("map");
+  run_seconds(2);
+  ask("p2", std::nullopt, false);
+  ASSERT_EQ(answers_.size(), 2U);
+  EXPECT_EQ(answers_[1].code, "NO_POSE");
+  MapPose pose;
+  pose.agent = "robot1";
+  pose.T_map_base.translation() = Eigen::Vector3d(0.4, 0.8, 0);
+  bus_.publish("out/pose/robot1", encode(pose));
+  ask("p3", std::nullopt, false);
+  ASSERT_EQ(answers_.size(), 3U);
+  EXPECT_EQ(answers_[2].code, "OK");
+  ask("p3", std::nullopt, false);
+  ASSERT_EQ(answers_.size(), 4U);
+  EXPECT_EQ(paths_[3].points, paths_[2].points);
+}
+
+TEST_F(PlannerOnTheBus, ALatePlannerHasTheSameGrid) {
+  start_planner(kStart);
+  map_sender_.begin("map");
+  run_seconds(2);
+  const BrickMap before = grid_;
+  EXPECT_FALSE(before.empty());
+
+  LockstepBus other_bus(kStart);
+  Counters other_counters;
+  BrickSender sender(other_bus, other_counters, {.stream = "out/map", .resolution = 0.1, .boot_id = kStart}, map_);
+  sender.begin("map");
+  other_bus.advance_to(kStart + 5'000'000);
+  const PlannerNode late({other_bus, other_counters, site_, "planner", kStart + 5'000'000});
+  other_bus.advance_to(kStart + 9'000'000);
+  EXPECT_TRUE(late.map().synced());
+  EXPECT_TRUE(late.planner().grid().cells() == before);
+}
+
+TEST_F(PlannerOnTheBus, RefusesABandWithoutVoxels) {
+  site_.planner.zmax = site_.planner.zmin;
+  EXPECT_THROW(start_planner(kStart), ConfigError);
+}
+
+TEST_F(PlannerOnTheBus, GarbageIsCountedAndNothingElse) {
+  start_planner(kStart);
+  for (const char* channel : {"in/path_request", "out/map/bricks", "out/map/digest", "out/pose/robot1"}) {
+    bus_.publish(channel, Bytes{1, 2, 3});
+  }
+  bus_.deliver();
+  EXPECT_EQ(counters_.get("refused.in/path_request.MALFORMED"), 1);
+  EXPECT_EQ(counters_.get("refused.out/map/bricks.MALFORMED"), 1);
+  EXPECT_TRUE(answers_.empty());
+}
+
+}  // namespace
+}  // namespace concord
