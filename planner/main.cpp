@@ -14,8 +14,11 @@ int main(int argc, char** argv) {
       [](const NodeContext& context) -> std::shared_ptr<void> { return std::make_shared<PlannerNode>(context); },
       [](CLI::App& app, Site& site) {
         app.add_option_function<std::pair<double, double>>(
-            "--band",
-            [&site](const std::pair<double, double>& band) { std::tie(site.planner.zmin, site.planner.zmax) = band; },
-            "ZMIN ZMAX: height band that is projected, map z in metres; overrides the site file");
+               "--band",
+               [&site](const std::pair<double, double>& band) {
+                 std::tie(site.planner.zmin, site.planner.zmax) = band;
+               },
+               "height band that is projected, map z in metres; overrides the site file")
+            ->type_name("ZMIN ZMAX");
       });
 }
