@@ -76,7 +76,7 @@ void BrickReceiver::forget_held() {
 /// Whether what is said under this epoch and frame counts; moves on to a newer epoch.
 bool BrickReceiver::enter(std::int64_t boot_id, const std::string& frame_id, double resolution) {
   const std::int64_t time = bus_.now();
-  if (std::abs(resolution - config_.resolution) > 1e-9) {
+  if (!(std::abs(resolution - config_.resolution) <= 1e-9)) {
     counters_.refused(config_.stream,
                       {Code::kBadResolution, "stream has " + std::to_string(resolution) + " m, the site " +
                                                  std::to_string(config_.resolution) + " m"});

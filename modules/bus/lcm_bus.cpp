@@ -12,9 +12,6 @@
 namespace concord {
 namespace {
 
-/// Enough for a second of bricks at the fastest pace seen without loss; bounded, so that a stalled process
-/// drops (and asks again) instead of growing.
-constexpr int kQueuedMessages = 16'384;
 constexpr int kReceiveBuffer = 4 << 20;
 
 /// LCM takes the socket buffer from the url; the default loses most of a burst.
@@ -45,10 +42,10 @@ LcmBus::LcmBus(const std::string& url, Counters& counters) : lcm_(with_receive_b
 
 LcmBus::~LcmBus() = default;
 
-void LcmBus::subscribe(const std::string& channel_regex, Handler handler) {
+void LcmBus::subscribe(const std::string& channel_regex, Handler handler, int queued) {
   Subscription& subscription = subscriptions_.emplace_back(Subscription{this, std::move(handler)});
   lcm::Subscription* raw = lcm_.subscribe(channel_regex, &Subscription::receive, &subscription);
-  raw->setQueueCapacity(kQueuedMessages);
+  raw->setQueueCapacity(queued);
 }
 
 void LcmBus::Subscription::receive(const lcm::ReceiveBuffer* buffer, const std::string& channel) {

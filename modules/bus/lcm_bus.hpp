@@ -18,7 +18,8 @@ class LcmBus final : public Bus {
   LcmBus(const std::string& url, Counters& counters);
   ~LcmBus() override;
 
-  void subscribe(const std::string& channel_regex, Handler handler) override;
+  using Bus::subscribe;
+  void subscribe(const std::string& channel_regex, Handler handler, int queued) override;
   void publish(const std::string& channel, std::span<const std::uint8_t> bytes) override;
   void every(std::int64_t period, Task task) override;
   [[nodiscard]] std::int64_t now() const override;

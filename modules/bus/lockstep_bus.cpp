@@ -4,7 +4,7 @@
 
 namespace concord {
 
-void LockstepBus::subscribe(const std::string& channel_regex, Handler handler) {
+void LockstepBus::subscribe(const std::string& channel_regex, Handler handler, int /*queued: nothing ever waits*/) {
   subscriptions_.push_back({std::regex(channel_regex), std::move(handler)});
   by_channel_.clear();
 }

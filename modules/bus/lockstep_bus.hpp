@@ -17,7 +17,8 @@ class LockstepBus final : public Bus {
  public:
   explicit LockstepBus(std::int64_t start) : now_(start) {}
 
-  void subscribe(const std::string& channel_regex, Handler handler) override;
+  using Bus::subscribe;
+  void subscribe(const std::string& channel_regex, Handler handler, int queued) override;
   void publish(const std::string& channel, std::span<const std::uint8_t> bytes) override;
   void every(std::int64_t period, Task task) override;
   [[nodiscard]] std::int64_t now() const override { return now_; }

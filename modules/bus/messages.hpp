@@ -171,20 +171,27 @@ Decoded<ProcessStatus> decode(std::span<const std::uint8_t> bytes);
 inline const std::string kAnswers = "out/answer";
 void answer(Bus& bus, const Answer& value);
 
+/// How many messages of a type may wait for a busy process. LCM counts messages, not bytes: the largest kinds get few.
+template <class T>
+inline constexpr int kQueuedOf = Bus::kQueued;
+template <>
+inline constexpr int kQueuedOf<OctomapMessage> = 4;
+template <>
+inline constexpr int kQueuedOf<CloudMessage> = 32;
+
 /// Subscribes to a message type: decodes, hands on what is good, counts what is not and refuses it to its asker.
 /// `process` names who refuses.
 template <class T, class Handle>
 void listen(Bus& bus, Counters& counters, const std::string& process, const std::string& channel_regex, Handle handle) {
-  bus.subscribe(channel_regex,
-                [&bus, &counters, process, handle](const std::string& channel, std::span<const std::uint8_t> bytes) {
-                  Decoded<T> value = decode<T>(bytes);
-                  if (value) return handle(channel, std::move(*value));
-                  counters.refused(channel, value.error().error);
-                  if (!value.error().id.empty()) {
-                    answer(bus, {value.error().id, process, false, name(value.error().error.code),
-                                 value.error().error.message, 0, 0});
-                  }
-                });
+  const auto hear = [&bus, &counters, process, handle](const std::string& channel,
+                                                       std::span<const std::uint8_t> bytes) {
+    Decoded<T> value = decode<T>(bytes);
+    if (value) return handle(channel, std::move(*value));
+    const auto& [error, id] = value.error();
+    counters.refused(channel, error);
+    if (!id.empty()) answer(bus, {id, process, false, name(error.code), error.message, 0, 0});
+  };
+  bus.subscribe(channel_regex, hear, kQueuedOf<T>);
 }
 
 }  // namespace concord
