@@ -1,0 +1,57 @@
+#include "cli/command.hpp"
+
+#include <cstdio>
+
+#include <nlohmann/json.hpp>
+
+#include "bus/site.hpp"
+
+namespace concord {
+namespace {
+
+int report(const Failure& failure, const Common& common) {
+  if (common.json) {
+    common.print({{"error", {{"code", failure.code}, {"message", failure.message}}}}, "");
+  } else {
+    std::fprintf(stderr, "concord: %s (%s)\n", failure.message.c_str(), failure.code.c_str());
+  }
+  return static_cast<int>(failure.exit);
+}
+
+}  // namespace
+
+void Common::print(const nlohmann::json& object, const std::string& words) const {
+  // What a file or a peer said may hold bytes that are no UTF-8.
+  const std::string text = json ? object.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) : words;
+  std::printf("%s%s", text.c_str(), text.empty() || text.back() == '\n' ? "" : "\n");
+  std::fflush(stdout);
+}
+
+Program::Program() : app_("One client for a Concord stack and its map files", "concord") {
+  app_.require_subcommand(1);
+  app_.fallthrough();
+  app_.add_flag("--json", common_.json, "one JSON object instead of words");
+  app_.add_option("--site", common_.site_file, "the site's YAML file; defaults hold where it is silent")
+      ->envname("CONCORD_SITE");
+  app_.add_option("--timeout", common_.timeout, "seconds to wait for an answer")->check(CLI::Range(0.1, 3600.0));
+}
+
+CLI::App& Program::add(const std::string& name, const std::string& what, Run run) {
+  CLI::App* command = app_.add_subcommand(name, what);
+  command->callback([this, run = std::move(run)] { chosen_ = run; });
+  return *command;
+}
+
+int Program::run(int argc, const char* const* argv) {
+  try {
+    app_.parse(argc, argv);
+    const Outcome outcome = chosen_(common_);
+    return outcome ? static_cast<int>(*outcome) : report(outcome.error(), common_);
+  } catch (const CLI::ParseError& e) {
+    return app_.exit(e) == 0 ? 0 : static_cast<int>(Exit::kUnusable);
+  } catch (const ConfigError& e) {
+    return report({Exit::kUnusable, "CONFIGURATION", e.what()}, common_);
+  }
+}
+
+}  // namespace concord

@@ -1,0 +1,107 @@
+#include "cli/live.hpp"
+
+#include <unistd.h>
+
+#include <cinttypes>
+#include <cmath>
+
+namespace concord {
+namespace {
+
+Site site_of(const Common& common) { return common.site_file.empty() ? Site{} : load_site(common.site_file); }
+
+}  // namespace
+
+Live::Live(const Common& common)
+    : site_(site_of(common)),
+      timeout_(common.timeout),
+      bus_(site_.lcm_url, counters_),
+      id_prefix_("cli-" + std::to_string(getpid()) + "-" + std::to_string(bus_.now()) + "-") {
+  // Only what is ours is kept: others' answers are many.
+  hear<Answer>(kAnswers, [this](const std::string&, Answer answer) {
+    if (answer.id.starts_with(id_prefix_)) answers_[answer.id] = std::move(answer);
+  });
+  hear<Path>("out/path/.*", [this](const std::string&, Path path) {
+    if (path.id.starts_with(id_prefix_)) paths_[path.id] = std::move(path);
+  });
+}
+
+std::string Live::new_id() { return id_prefix_ + std::to_string(++next_id_); }
+
+bool Live::wait(double seconds, const std::function<bool()>& done) {
+  const std::int64_t end = bus_.now() + std::llround(seconds * 1e6);
+  while (!done() && bus_.now() < end) bus_.spin_once(10);
+  return done();
+}
+
+bool Live::ask_until(const std::string& channel, const Bytes& request, double seconds,
+                     const std::function<bool()>& done) {
+  std::int64_t due = bus_.now();
+  return wait(seconds, [&] {
+    if (done()) return true;
+    if (bus_.now() >= due) {
+      bus_.publish(channel, request);
+      due = bus_.now() + kAskAgain;
+    }
+    return false;
+  });
+}
+
+const Answer* Live::answer_to(const std::string& id) const {
+  const auto it = answers_.find(id);
+  return it != answers_.end() ? &it->second : nullptr;
+}
+
+const Path* Live::path_for(const std::string& id) const {
+  const auto it = paths_.find(id);
+  return it != paths_.end() ? &it->second : nullptr;
+}
+
+tl::unexpected<Failure> Live::no_answer(const std::string& who) const {
+  return fail(Exit::kNoAnswer, "NO_ANSWER",
+              who + " did not answer in time; is the stack running on " + site_.lcm_url + "? (concord status)");
+}
+
+tl::expected<Answer, Failure> Live::ask(const std::string& channel, const Bytes& request, const std::string& id) {
+  if (!ask_until(channel, request, timeout_, [&] { return answer_to(id) != nullptr; })) return no_answer("the stack");
+  const Answer& answer = *answer_to(id);
+  if (!answer.ok) return fail(Exit::kRefused, answer.code, answer.process + ": " + answer.message);
+  return answer;
+}
+
+StreamCopy::StreamCopy(Live& live, const std::string& stream)
+    : stream_(stream),
+      receiver_(live.bus(), live.counters(), {.stream = stream, .resolution = live.site().resolution},
+                {.on_frame = [this](const std::string&) { map_.clear(); },
+                 .on_brick = [this](BrickIndex index, Brick brick) { map_.set(index, std::move(brick)); },
+                 .on_end = [this] { map_.clear(); }}) {
+  const StreamChannels channels(stream);
+  live.hear<BrickPacket>(channels.bricks, [this](const std::string&, const BrickPacket& p) { receiver_.on_packet(p); });
+  live.hear<BrickDigest>(channels.digest, [this](const std::string&, const BrickDigest& d) { receiver_.on_digest(d); });
+}
+
+tl::expected<void, Failure> StreamCopy::wait_synced(Live& live) {
+  if (live.wait(live.timeout(), [this] { return synced(); })) return {};
+  if (!heard()) return live.no_answer("the sender of " + stream_);
+  return fail(Exit::kIncomplete, "INCOMPLETE",
+              stream_ + " has not arrived whole: " + std::to_string(missing()) +
+                  " versions are missing; give a longer --timeout");
+}
+
+tl::expected<Path, Failure> request_path(Live& live, const PathRequest& request) {
+  const auto done = [&] { return live.path_for(request.id) != nullptr || live.answer_to(request.id) != nullptr; };
+  if (!live.ask_until("in/path_request", encode(request, live.bus().now()), live.timeout(), done)) {
+    return live.no_answer("the planner");
+  }
+  if (const Path* path = live.path_for(request.id)) return *path;
+  const Answer& answer = *live.answer_to(request.id);
+  return fail(Exit::kRefused, answer.code, answer.process + ": " + answer.message);
+}
+
+std::string hex(std::uint64_t digest) {
+  char text[17];
+  std::snprintf(text, sizeof(text), "%016" PRIx64, digest);
+  return text;
+}
+
+}  // namespace concord

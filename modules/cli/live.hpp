@@ -1,0 +1,95 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "bus/brick_stream.hpp"
+#include "bus/lcm_bus.hpp"
+#include "bus/messages.hpp"
+#include "bus/site.hpp"
+#include "cli/command.hpp"
+
+namespace concord {
+
+/// Until then a request is sent again and again: datagrams get lost, and the stack does what it is asked once per id.
+inline constexpr std::int64_t kAskAgain = 300'000;
+
+/// The running stack, as a client sees it.
+class Live {
+ public:
+  /// @throws ConfigError for a site file that cannot be used, or when LCM cannot join.
+  explicit Live(const Common& common);
+
+  [[nodiscard]] LcmBus& bus() { return bus_; }
+  [[nodiscard]] Counters& counters() { return counters_; }
+  [[nodiscard]] const Site& site() const { return site_; }
+  [[nodiscard]] double timeout() const { return timeout_; }
+
+  /// An id that nobody else uses.
+  [[nodiscard]] std::string new_id();
+
+  /// Calls `take(channel, value)` with each good message; what is malformed is passed over.
+  template <class T, class Take>
+  void hear(const std::string& channel_regex, Take take) {
+    bus_.subscribe(channel_regex, [take](const std::string& channel, std::span<const std::uint8_t> bytes) {
+      if (auto value = decode<T>(bytes)) take(channel, std::move(*value));
+    });
+  }
+
+  /// Handles messages until `done()`, at most `seconds`. @return done().
+  bool wait(double seconds, const std::function<bool()>& done);
+  /// The same, publishing `request` on `channel` at once and until then every kAskAgain.
+  bool ask_until(const std::string& channel, const Bytes& request, double seconds, const std::function<bool()>& done);
+
+  /// Asks and waits for the answer to `id`. Fails with what the stack refused it for, or kNoAnswer.
+  [[nodiscard]] tl::expected<Answer, Failure> ask(const std::string& channel, const Bytes& request,
+                                                  const std::string& id);
+  /// The answer to one of our ids, once it has come.
+  [[nodiscard]] const Answer* answer_to(const std::string& id) const;
+  /// The latest path for one of our ids; an active one is planned anew when the map changes.
+  [[nodiscard]] const Path* path_for(const std::string& id) const;
+  /// Nobody answered; what the caller can do about it.
+  [[nodiscard]] tl::unexpected<Failure> no_answer(const std::string& who) const;
+
+ private:
+  Site site_;
+  double timeout_;
+  Counters counters_;
+  LcmBus bus_;
+  std::string id_prefix_;
+  std::int64_t next_id_ = 0;
+  std::map<std::string, Answer> answers_;
+  std::map<std::string, Path> paths_;
+};
+
+/// A copy of one brick stream of the running stack. Must live as long as `live` handles messages.
+class StreamCopy {
+ public:
+  StreamCopy(Live& live, const std::string& stream);
+
+  [[nodiscard]] bool synced() const { return receiver_.heard() && receiver_.synced(); }
+  [[nodiscard]] bool heard() const { return receiver_.heard(); }
+  [[nodiscard]] std::int64_t missing() const { return receiver_.missing(); }
+  [[nodiscard]] std::int64_t revision() const { return receiver_.revision(); }
+  [[nodiscard]] const BrickMap& map() const { return map_; }
+
+  /// Fails with kNoAnswer when nobody speaks, with kIncomplete when it did not arrive whole in time.
+  [[nodiscard]] tl::expected<void, Failure> wait_synced(Live& live);
+
+ private:
+  BrickMap map_;
+  std::string stream_;
+  BrickReceiver receiver_;
+};
+
+/// Asks the running planner and prints the path.
+[[nodiscard]] Outcome ask_path(PathRequest request, const Common& common);
+/// The planner's word on `request`, or the stack's refusal.
+[[nodiscard]] tl::expected<Path, Failure> request_path(Live& live, const PathRequest& request);
+
+/// As people and scripts write it.
+[[nodiscard]] std::string hex(std::uint64_t digest);
+
+}  // namespace concord

@@ -1,0 +1,61 @@
+#include <memory>
+
+#include <nlohmann/json.hpp>
+
+#include "bus/site.hpp"
+#include "cli/command.hpp"
+#include "cli/grid_file.hpp"
+#include "cli/map_file.hpp"
+#include "cli/page.hpp"
+
+namespace concord {
+namespace {
+
+struct Options {
+  std::string file, out;
+  std::vector<double> band;
+  double free_share = Site{}.planner.free_share;
+};
+
+Outcome project(const Options& options, const Common& common) {
+  const auto loaded = load_map(options.file);
+  if (!loaded) return fail(loaded.error());
+  const auto grid = project_map(loaded->map, loaded->resolution, options.band[0], options.band[1], options.free_share);
+  if (!grid) return fail(grid.error());
+  const auto extent = extent_of(*grid);
+  if (!extent) return fail(extent.error());
+  if (!options.out.empty()) {
+    const auto saved = save_grid(options.out, *grid, *extent);
+    if (!saved) return fail(saved.error());
+  }
+  const double r = loaded->resolution;
+  const std::int64_t unknown = extent->width() * extent->height() - extent->free - extent->occupied;
+  common.print({{"resolution", r},
+                {"width", extent->width()},
+                {"height", extent->height()},
+                {"origin", {extent->min.x * r, extent->min.y * r}},
+                {"free", extent->free},
+                {"occupied", extent->occupied},
+                {"unknown", unknown}},
+               "grid      " + std::to_string(extent->width()) + " x " + std::to_string(extent->height()) +
+                   " cells of " + format_number(r, 3) + " m\nfree      " + format_count(extent->free) + "\noccupied  " +
+                   format_count(extent->occupied) + "\nunknown   " + format_count(unknown) +
+                   (options.out.empty() ? "" : "\nwritten to " + options.out));
+  return Exit::kDone;
+}
+
+}  // namespace
+
+void add_project(Program& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App& command = program.add("project", "a height band of a map file as a 2D grid",
+                                  [options](const Common& common) { return project(*options, common); });
+  command.add_option("file", options->file, ".bt or .ot")->required();
+  command.add_option("--band", options->band, "zmin zmax, metres")->expected(2)->required();
+  command.add_option("--free-share", options->free_share, "of the band that must be observed free, above 0 to 1")
+      ->check(CLI::Range(1e-6, 1.0))
+      ->capture_default_str();
+  command.add_option("--out", options->out, "writes a .pgm, and the .yaml that map_server reads");
+}
+
+}  // namespace concord

@@ -1,0 +1,296 @@
+#include "cli/relief.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <map>
+#include <unordered_map>
+
+namespace concord {
+namespace {
+
+/// The occupied voxels of one column under the cut; none: bottom above top.
+struct Column {
+  std::int32_t top = std::numeric_limits<std::int32_t>::min();
+  std::int32_t bottom = std::numeric_limits<std::int32_t>::max();
+  bool known = false;
+
+  [[nodiscard]] bool solid() const { return bottom <= top; }
+};
+/// Columns by brick (z = 0), x fastest.
+using Columns = std::unordered_map<BrickIndex, std::array<Column, kBrickSide * kBrickSide>, IndexHash>;
+
+constexpr int kMaxTints = 32;
+constexpr int kMaxSide = 8192;   // cells; a picture needs no more, and memory stays bounded
+constexpr double kStripe = 0.4;  // metres along x
+constexpr double kMargin = 0.6;  // metres around what is drawn
+
+Columns columns_of(const BrickMap& map, std::int32_t cut) {
+  Columns columns;
+  map.for_each_brick([&](BrickIndex index, const Brick& brick) {
+    if (origin_of(index).z >= cut) return;
+    auto& block = columns[{index.x, index.y, 0}];
+    brick.for_each([&](int local, LogOdds value) {
+      const std::int32_t z = voxel_at(index, local).z;
+      if (z >= cut) return;
+      Column& column = block[local & 63];
+      column.known = true;
+      if (!is_occupied(value)) return;
+      column.top = std::max(column.top, z);
+      column.bottom = std::min(column.bottom, z);
+    });
+  });
+  return columns;
+}
+
+/// Calls `visit(x, y, column)` for each column that holds a known voxel, in no particular order.
+template <class Visit>
+void for_each_column(const Columns& columns, Visit&& visit) {
+  for (const auto& [index, block] : columns) {
+    for (int i = 0; i < kBrickSide * kBrickSide; ++i) {
+      const VoxelIndex v = voxel_at(index, i);
+      if (block[i].known) visit(v.x, v.y, block[i]);
+    }
+  }
+}
+
+/// What is left of sorted values when half a percent is taken off each end.
+std::pair<std::int32_t, std::int32_t> trimmed(std::vector<std::int32_t>& values) {
+  const std::size_t drop = values.size() / 200;
+  std::nth_element(values.begin(), values.begin() + drop, values.end());
+  const std::int32_t low = values[drop];
+  std::nth_element(values.begin(), values.end() - 1 - drop, values.end());
+  return {low, values[values.size() - 1 - drop]};
+}
+
+/// The part of the lattice that is drawn.
+struct Window {
+  std::int32_t min_x, min_y, max_x, max_y;
+
+  void include(const VoxelIndex& v) {
+    min_x = std::min(min_x, v.x);
+    max_x = std::max(max_x, v.x);
+    min_y = std::min(min_y, v.y);
+    max_y = std::max(max_y, v.y);
+  }
+};
+
+Window window_of(const Overview& overview, std::vector<std::int32_t>& xs, std::vector<std::int32_t>& ys) {
+  const auto [min_x, max_x] = trimmed(xs);
+  const auto [min_y, max_y] = trimmed(ys);
+  Window window{min_x, min_y, max_x, max_y};
+  const auto include = [&](const Eigen::Vector2d& p) {
+    window.include(voxel_of({p.x(), p.y(), 0.0}, overview.resolution));
+  };
+  for (const auto* route : {&overview.before, &overview.after}) {
+    if (route->has_value()) std::ranges::for_each((*route)->points, include);
+  }
+  if (overview.start) include(*overview.start);
+  if (overview.goal) include(*overview.goal);
+  for (const VoxelIndex& v : overview.edit) window.include(v);
+  const int margin = static_cast<int>(std::ceil(kMargin / overview.resolution));
+  window = {window.min_x - margin, window.min_y - margin, window.max_x + margin, window.max_y + margin};
+  window.max_x = std::min(window.max_x, window.min_x + kMaxSide - 1);
+  window.max_y = std::min(window.max_y, window.min_y + kMaxSide - 1);
+  return window;
+}
+
+/// Most of what is lowest in its column lies on the floor.
+double floor_of(const std::map<std::int32_t, std::int64_t>& lowest, double resolution) {
+  const auto most = std::ranges::max_element(lowest, {}, [](const auto& entry) { return entry.second; });
+  return most == lowest.end() ? 0.0 : (most->first + 1) * resolution;
+}
+
+std::uint32_t claims_of(const Overview& overview, const VoxelIndex& voxel, const std::vector<Transform>& T_agent_map) {
+  std::uint32_t claims = 0;
+  const Eigen::Vector3d centre = centre_of(voxel, overview.resolution);
+  for (std::size_t i = 0; i < T_agent_map.size(); ++i) {
+    if (overview.agents[i].map == nullptr) continue;
+    // A turned lattice puts a surface up to one voxel beside the map's.
+    bool found = false;
+    for (int k = 0; k < 27 && !found; ++k) {
+      const int step = (k + 13) % 27;  // the middle first
+      const Eigen::Vector3d offset(step % 3 - 1, step / 3 % 3 - 1, step / 9 - 1);
+      const Eigen::Vector3d p = T_agent_map[i] * (centre + 0.5 * overview.resolution * offset);
+      const LogOdds value = overview.agents[i].map->at(voxel_of(p, overview.resolution));
+      found = is_known(value) && is_occupied(value);
+    }
+    if (found) claims |= std::uint32_t{1} << i;
+  }
+  return claims;
+}
+
+/// How much light reaches a cell, 0 to 1: open sky (soft) and the sun at the upper left.
+class Light {
+ public:
+  Light(const Relief& relief, double resolution) : relief_(relief), resolution_(resolution) {}
+
+  [[nodiscard]] float at(int column, int row) const {
+    const float here = height(column, row);
+    return (1.0F - 0.42F * closed_sky(column, row, here)) * (1.0F - 0.30F * shadow(column, row, here));
+  }
+
+ private:
+  [[nodiscard]] float height(int column, int row) const {
+    column = std::clamp(column, 0, relief_.width - 1);
+    row = std::clamp(row, 0, relief_.height - 1);
+    const Relief::Cell& cell = relief_.cells[static_cast<std::size_t>(row) * relief_.width + column];
+    return cell.solid() ? std::max(cell.top, static_cast<float>(relief_.floor)) : static_cast<float>(relief_.floor);
+  }
+
+  [[nodiscard]] float closed_sky(int column, int row, float here) const {
+    static constexpr std::array<std::array<float, 2>, 12> kRing = {{{1, 0},
+                                                                    {.87F, .5F},
+                                                                    {.5F, .87F},
+                                                                    {0, 1},
+                                                                    {-.5F, .87F},
+                                                                    {-.87F, .5F},
+                                                                    {-1, 0},
+                                                                    {-.87F, -.5F},
+                                                                    {-.5F, -.87F},
+                                                                    {0, -1},
+                                                                    {.5F, -.87F},
+                                                                    {.87F, -.5F}}};
+    float closed = 0;
+    for (const float reach : {0.12F, 0.3F, 0.6F}) {
+      const float cells = std::max(1.0F, reach / static_cast<float>(resolution_));
+      for (const auto& [dx, dy] : kRing) {
+        const float rise = height(column + static_cast<int>(std::lround(dx * cells)),
+                                  row + static_cast<int>(std::lround(dy * cells))) -
+                           here;
+        closed += std::clamp(rise / (reach * 2.5F), 0.0F, 1.0F);
+      }
+    }
+    return closed / (3.0F * kRing.size());
+  }
+
+  [[nodiscard]] float shadow(int column, int row, float here) const {
+    constexpr float kSlope = 1.6F;  // rise over run of the sun
+    const int steps = std::min(48, static_cast<int>(1.6 / resolution_));
+    float dark = 0;
+    for (int step = 1; step <= steps; ++step) {
+      const float run = static_cast<float>(step) * static_cast<float>(resolution_) * 1.414F;
+      const float over = height(column - step, row + step) - here - run * kSlope;
+      dark = std::max(dark, std::clamp(over / 0.5F, 0.0F, 1.0F));
+    }
+    return dark;
+  }
+
+  const Relief& relief_;
+  double resolution_;
+};
+
+constexpr Rgb kNobody{0.56F, 0.53F, 0.49F};
+constexpr Rgb kFloor{0.985F, 0.98F, 0.965F};
+
+/// One agent's own colour; where several agree, slanted stripes of theirs.
+Rgb tint_of(std::uint32_t claims, int stripe) {
+  const int agents = std::popcount(claims);
+  if (agents == 0) return kNobody;
+  for (int skip = stripe % agents; skip > 0; --skip) claims &= claims - 1;
+  return agent_colour(static_cast<std::size_t>(std::countr_zero(claims)));
+}
+
+/// The ground is seen by everyone: stripes there would only be loud.
+Rgb mean_of(std::uint32_t claims) {
+  const int agents = std::popcount(claims);
+  if (agents == 0) return kNobody;
+  Rgb sum;
+  for (int i = 0; i < agents; ++i) {
+    const Rgb colour = tint_of(claims, i);
+    sum = {sum.r + colour.r, sum.g + colour.g, sum.b + colour.b};
+  }
+  return sum.scaled(1.0F / static_cast<float>(agents));
+}
+
+std::uint32_t packed(const Rgb& colour) {
+  const auto byte = [](float v) { return static_cast<std::uint32_t>(std::lround(std::clamp(v, 0.0F, 1.0F) * 255.0F)); };
+  return 0xFF000000U | byte(colour.r) << 16 | byte(colour.g) << 8 | byte(colour.b);
+}
+
+}  // namespace
+
+Rgb agent_colour(std::size_t i) {
+  static constexpr std::array<Rgb, 8> kPalette = {{{0.16F, 0.42F, 0.72F},    // blue
+                                                   {0.93F, 0.56F, 0.15F},    // orange
+                                                   {0.48F, 0.33F, 0.66F},    // violet
+                                                   {0.80F, 0.66F, 0.13F},    // gold
+                                                   {0.36F, 0.47F, 0.56F},    // slate
+                                                   {0.85F, 0.45F, 0.60F},    // rose
+                                                   {0.55F, 0.40F, 0.25F},    // brown
+                                                   {0.30F, 0.30F, 0.62F}}};  // indigo
+  return kPalette[i % kPalette.size()];
+}
+
+Relief look_down(const Overview& overview) {
+  const std::int32_t cut = static_cast<std::int32_t>(std::floor(overview.cut / overview.resolution));
+  const Columns columns = columns_of(*overview.map, cut);
+  std::vector<std::int32_t> xs, ys;
+  std::map<std::int32_t, std::int64_t> lowest;
+  for_each_column(columns, [&](std::int32_t x, std::int32_t y, const Column& column) {
+    if (!column.solid()) return;
+    xs.push_back(x);
+    ys.push_back(y);
+    ++lowest[column.bottom];
+  });
+  Relief relief;
+  if (xs.empty()) return relief;
+
+  const Window window = window_of(overview, xs, ys);
+  relief.min_x = window.min_x;
+  relief.min_y = window.min_y;
+  relief.width = window.max_x - window.min_x + 1;
+  relief.height = window.max_y - window.min_y + 1;
+  relief.floor = floor_of(lowest, overview.resolution);
+  relief.cells.resize(static_cast<std::size_t>(relief.width) * relief.height);
+
+  std::vector<Transform> T_agent_map;
+  for (const auto& agent : overview.agents) {
+    if (T_agent_map.size() < kMaxTints) T_agent_map.push_back(agent.T_map_agent.inverse());
+  }
+  for_each_column(columns, [&](std::int32_t x, std::int32_t y, const Column& column) {
+    Relief::Cell* cell = relief.at(x, y);
+    if (cell == nullptr) return;
+    cell->seen = true;
+    if (!column.solid()) return;
+    cell->top = static_cast<float>((column.top + 1) * overview.resolution);
+    cell->claims = claims_of(overview, {x, y, column.top}, T_agent_map);
+  });
+  if (overview.conflicts != nullptr) {
+    overview.conflicts->for_each_brick([&](BrickIndex index, const Brick& brick) {
+      brick.for_each([&](int local, LogOdds value) {
+        const VoxelIndex v = voxel_at(index, local);
+        Relief::Cell* cell = relief.at(v.x, v.y);
+        if (cell != nullptr && is_occupied(value) && v.z < cut) cell->conflict = true;
+      });
+    });
+  }
+  return relief;
+}
+
+std::vector<std::uint32_t> shade(const Relief& relief, double resolution, double cut) {
+  std::vector<std::uint32_t> pixels(relief.cells.size(), 0);
+  const Light light(relief, resolution);
+  const double span = std::max(cut - relief.floor, resolution);
+  const int stripe = std::max(2, static_cast<int>(std::lround(kStripe / resolution)));
+  for (int row = 0; row < relief.height; ++row) {
+    for (int column = 0; column < relief.width; ++column) {
+      const std::size_t i = static_cast<std::size_t>(row) * relief.width + column;
+      const Relief::Cell& cell = relief.cells[i];
+      if (!cell.seen) continue;
+      Rgb colour = kFloor;
+      if (cell.solid()) {
+        const auto rise = static_cast<float>(std::clamp((cell.top - relief.floor) / span, 0.0, 1.0));
+        const bool ground = cell.top < relief.floor + 1.5 * resolution;
+        const float strength = ground ? 0.13F : 0.42F + 0.58F * std::sqrt(rise);
+        const Rgb tint = ground ? mean_of(cell.claims) : tint_of(cell.claims, (column + row) / stripe);
+        colour = kFloor.mixed(tint, strength).scaled(1.0F - 0.32F * rise * rise);
+      }
+      pixels[i] = packed(colour.scaled(light.at(column, row)));
+    }
+  }
+  return pixels;
+}
+
+}  // namespace concord
