@@ -39,10 +39,9 @@ std::vector<Eigen::Vector3f> downsample(const BrickMap& map, double resolution, 
   std::vector<Eigen::Vector3f> points;
   points.reserve(cells.size());
   for (const auto& [cell, sum] : cells) {
-    const auto mean = [&](std::int64_t total) {
-      return static_cast<float>((static_cast<double>(total) / static_cast<double>(sum.count) + 0.5) * resolution);
-    };
-    points.emplace_back(mean(sum.x), mean(sum.y), mean(sum.z));
+    const Eigen::Vector3d total(static_cast<double>(sum.x), static_cast<double>(sum.y), static_cast<double>(sum.z));
+    const Eigen::Array3d mean_index = total.array() / static_cast<double>(sum.count);
+    points.emplace_back(((mean_index + 0.5) * resolution).matrix().cast<float>());
   }
   return points;
 }

@@ -24,7 +24,7 @@ inline constexpr double kMaxRayLength = 10'000;
 inline constexpr std::uint64_t kMaxScanSteps = 500'000'000;
 inline constexpr std::size_t kMaxScanBricks = 2'000'000;
 
-/// What a scan adds to a voxel: OctoMap's defaults, log-odds +0.85 and -0.4, clamped to [kFree, kOccupied].
+/// What a scan adds to a voxel: log-odds +0.85 and -0.4, the sum clamped to [kFree, kOccupied] (OctoMap, Hornung 2013).
 inline constexpr LogOdds kHit = 870;
 inline constexpr LogOdds kMiss = -410;
 

@@ -24,6 +24,8 @@ TEST(Scan, GivesTheMapOfStockOctomapButForRoundingAtEdges) {
   std::mt19937 random(1);
   std::uniform_real_distribution<float> within(-4.0f, 4.0f);
   octomap::OcTree tree(kResolution);
+  tree.setProbHit(octomap::probability(to_double(kHit)));
+  tree.setProbMiss(octomap::probability(to_double(kMiss)));
   BrickMap map;
   for (int round = 0; round < 4; ++round) {
     Scan scan{Transform::Identity(), 3.0, {}};
