@@ -49,7 +49,7 @@ bool returns(const Sensor& sensor, Material material, double range, Random& rand
 Sensor make_sensor(AgentKind kind) {
   switch (kind) {
     case AgentKind::kLidar:
-      return {.directions = rings(32, 15 * kDegree, 720),
+      return {.directions = rings(32, 15 * kDegree, 480),
               .min_range = 0.4,
               .max_range = 25,
               .trusted_range = 25,
@@ -57,7 +57,7 @@ Sensor make_sensor(AgentKind kind) {
               .noise_growth = 0,
               .black_range = 0,
               .black_return = 0,
-              .scans_per_second = 2.5};
+              .scans_per_second = 2};
     case AgentKind::kCamera:
       return {.directions = pinhole(80, 60, 43.5 * kDegree, 29 * kDegree),
               .min_range = 0.3,
@@ -76,8 +76,8 @@ Sensor make_sensor(AgentKind kind) {
           .trusted_range = 3.5,
           .noise = 0.004,
           .noise_growth = 0,
-          .black_range = 1.8,
-          .black_return = 0.15,
+          .black_range = 2.2,
+          .black_return = 0.35,
           .scans_per_second = 5};
 }
 

@@ -38,7 +38,7 @@ void SimNode::begin() {
   const std::uint64_t own = config_.seed * 1000 + static_cast<std::uint64_t>(config_.kind) * 100;
   self_.emplace(world_, config_.kind, own + static_cast<std::uint64_t>(frames_));
   ++frames_;
-  const std::string frame_id = "f" + std::to_string(boot_id_) + "-" + std::to_string(frames_);
+  const std::string frame_id = std::to_string(boot_id_) + "-" + std::to_string(frames_);
   if (submap_out_) submap_out_->begin_frame(frame_id);
   if (cloud_out_) cloud_out_->begin_frame(frame_id);
   began_ = bus_.now();

@@ -18,8 +18,17 @@ struct Route {
 /// Kept clear of everything that stands in the warehouse by at least a robot's radius; the headset's goes where robots
 /// cannot.
 const Route& route_of(AgentKind kind) {
-  static const Route kLidar{
-      {{2.0, 2.2}, {7.0, 1.7}, {16.0, 1.7}, {16.2, 5.0}, {3.2, 5.0}, {3.2, 8.2}, {15.4, 8.2}, {16.6, 13.4}}, 0.95, 1.5};
+  static const Route kLidar{{{2.0, 2.2},
+                             {7.0, 1.7},
+                             {16.0, 1.7},
+                             {16.2, 5.0},
+                             {3.2, 5.0},
+                             {3.2, 8.2},
+                             {15.4, 8.2},
+                             {21.5, 8.5},
+                             {21.2, 13.4}},
+                            1.0,
+                            1.5};
   static const Route kCamera{{{22.3, 13.6},
                               {20.8, 8.6},
                               {20.6, 4.0},

@@ -78,7 +78,7 @@ class Builder {
     world.through_glass = {{15.5, 4.5}, {20.5, 3.2}};
   }
 
-  void plate() { plate_ = box({1.7, 12.49, 0.0}, {3.3, 12.51, 1.9}, Material::kMirror, 0.5); }
+  void plate() { plate_ = box({1.7, 12.49, 0.0}, {3.3, 12.51, 1.9}, Material::kMirror); }
   void stand() { stand_ = box({14.4, 9.4, 0.0}, {15.0, 10.0, 0.3}, Material::kBlack, 0.2); }
 
   void name_features(const std::vector<std::size_t>& posts) {
