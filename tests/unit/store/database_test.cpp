@@ -78,6 +78,10 @@ TEST_F(DatabaseTest, values_of_every_type_come_back) {
   EXPECT_EQ(select.text(2), "");
   EXPECT_TRUE(select.bytes(3).empty());
   EXPECT_FALSE(select.step().value());
+
+  std::vector<std::int64_t> integers;
+  ASSERT_TRUE(select.bind().for_each_row([&] { integers.push_back(select.integer(0)); }));
+  EXPECT_EQ(integers, (std::vector<std::int64_t>{std::numeric_limits<std::int64_t>::min(), 7}));
 }
 
 TEST_F(DatabaseTest, what_was_not_committed_is_undone) {

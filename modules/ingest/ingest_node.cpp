@@ -1,0 +1,183 @@
+#include "ingest/ingest_node.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+namespace concord {
+namespace {
+
+constexpr std::int64_t kFlushPeriod = 2'000'000;
+constexpr std::int64_t kCountPeriod = 1'000'000;
+/// A brick stream speaks each second while its sender lives.
+constexpr std::int64_t kStreamSilence = 3'000'000;
+constexpr std::int64_t kMostLostCounted = 1'000'000;  // a hostile number must not overflow a sum
+
+/// AGENT of `in/AGENT/...`.
+std::string agent_of(const std::string& channel) {
+  const std::size_t begin = channel.find('/') + 1;
+  return channel.substr(begin, channel.find('/', begin) - begin);
+}
+
+Ingest::Config config_of(const Site& site) {
+  return {site.resolution, site.ingest.max_agents, site.ingest.max_known_voxels};
+}
+
+}  // namespace
+
+IngestNode::IngestNode(const NodeContext& context)
+    : bus_(context.bus),
+      counters_(context.counters),
+      site_(context.site),
+      process_(context.process),
+      ingest_(config_of(context.site)),
+      store_(context.site.state / "ingest.db", context.site.resolution),
+      streams_(context.bus, context.counters, context.site.resolution, context.site.stream.bytes_per_second,
+               LayerStore::kMaxRemoved),
+      replies_(context.bus, context.site.stream.bytes_per_second),
+      answers_(context.bus) {
+  restore();
+  subscribe();
+}
+
+IngestNode::~IngestNode() { flush(); }
+
+void IngestNode::restore() {
+  auto loaded = store_.load();
+  if (!loaded) throw std::runtime_error(loaded.error().message);
+  for (const auto& [id, error] : loaded->refused) counters_.refused("disk." + id, error);
+  for (const std::string& id : loaded->removed) streams_.end(id);
+  for (auto& [id, stored] : loaded->agents) {
+    const Change change = ingest_.put(id, std::move(stored));
+    const Agent& agent = *ingest_.find(id);
+    streams_.tell(id, agent, change);
+    spdlog::info("{}: {} voxels in frame {} from disk", id, agent.known, agent.frame_id);
+    if (agent.source != Source::kStream || !ingest_.admit(id, agent.frame_id, Source::kStream)) continue;
+    const Input& input = inputs_.emplace(id, Input{make_receiver(id), bus_.now()}).first->second;
+    input.receiver->adopt(agent.frame_id, agent.layer);
+  }
+}
+
+void IngestNode::subscribe() {
+  const auto hear = [&]<class T>(const char* channel_regex, void (IngestNode::*handle)(const std::string&, const T&)) {
+    listen<T>(bus_, counters_, process_, channel_regex,
+              [this, handle](const std::string& channel, const T& message) { (this->*handle)(channel, message); });
+  };
+  hear("in/[^/]+/bricks", &IngestNode::on_packet);
+  hear("in/[^/]+/digest", &IngestNode::on_digest);
+  hear("in/[^/]+/octomap", &IngestNode::on_octomap);
+  hear("in/[^/]+/cloud", &IngestNode::on_cloud);
+  hear("in/agent_request", &IngestNode::on_agent_request);
+  hear("in/map_request", &IngestNode::on_map_request);
+  hear("in/downsample", &IngestNode::on_downsample);
+  bus_.every(kFlushPeriod, [this] { flush(); });
+  bus_.every(kCountPeriod, [this] { count(); });
+}
+
+/// The core's rules, and those that hang on time and on what the bus can bear.
+Result<void> IngestNode::admit(const std::string& id, const std::string& frame_id, Source source) const {
+  if (auto ok = ingest_.admit(id, frame_id, source); !ok) return ok;
+  const Agent* agent = ingest_.find(id);
+  if (agent == nullptr && streams_.full()) {
+    return refuse(Code::kTooLarge, "too many agents have come and gone; restart ingest");
+  }
+  const auto input = inputs_.find(id);
+  const bool streaming = agent != nullptr && agent->source == Source::kStream && input != inputs_.end() &&
+                         bus_.now() - input->second.last_heard < kStreamSilence;
+  if (streaming && source != Source::kStream) {
+    return refuse(Code::kBadRequest, id + " sends a brick stream; end that sender first, or use another agent id");
+  }
+  return {};
+}
+
+BrickReceiver* IngestNode::receiver_of(const std::string& id, const std::string& frame_id, const std::string& channel) {
+  if (auto ok = admit(id, frame_id, Source::kStream); !ok) {
+    counters_.refused(channel, ok.error());
+    return nullptr;
+  }
+  auto it = inputs_.find(id);
+  if (it == inputs_.end()) {
+    // Also bounded for ids that never send anything good.
+    if (static_cast<std::int64_t>(inputs_.size()) >= 2 * site_.ingest.max_agents) {
+      counters_.refused(channel, {Code::kTooLarge, "too many streams; raise ingest.max_agents in the site file"});
+      return nullptr;
+    }
+    it = inputs_.emplace(id, Input{make_receiver(id), 0}).first;
+  }
+  it->second.last_heard = bus_.now();
+  return it->second.receiver.get();
+}
+
+std::unique_ptr<BrickReceiver> IngestNode::make_receiver(const std::string& id) {
+  BrickReceiver::Events events;
+  events.on_frame = [this, id](const std::string& frame_id) {
+    const auto change = ingest_.begin_stream(id, frame_id);
+    if (!change) return counters_.refused("in/" + id, change.error());
+    spdlog::info("{}: frame {} begins", id, frame_id);
+    changed(id, *change);
+  };
+  events.on_brick = [this, id](BrickIndex index, Brick brick) {
+    const auto changes = ingest_.set_brick(id, index, std::move(brick));
+    if (!changes) return counters_.refused("in/" + id, changes.error());
+    if (!*changes) return;
+    store_.note(id, index);
+    streams_.touch(id, index);
+  };
+  const BrickReceiver::Config config{.stream = "in/" + id, .resolution = site_.resolution};
+  return std::make_unique<BrickReceiver>(bus_, counters_, config, std::move(events));
+}
+
+void IngestNode::on_packet(const std::string& channel, const BrickPacket& packet) {
+  counters_.add("bytes_in", static_cast<std::int64_t>(packet.data.size()));
+  BrickReceiver* receiver = receiver_of(agent_of(channel), packet.frame_id, channel);
+  if (receiver != nullptr) receiver->on_packet(packet);
+}
+
+void IngestNode::on_digest(const std::string& channel, const BrickDigest& digest) {
+  if (digest.frame_id.empty()) return;  // the sender has ended; what it sent stays
+  BrickReceiver* receiver = receiver_of(agent_of(channel), digest.frame_id, channel);
+  if (receiver != nullptr) receiver->on_digest(digest);
+}
+
+void IngestNode::on_octomap(const std::string& channel, const OctomapMessage& message) {
+  counters_.add("bytes_in", static_cast<std::int64_t>(message.data.size()));
+  const std::string id = agent_of(channel);
+  if (auto ok = admit(id, message.frame_id, Source::kOctomap); !ok) return counters_.refused(channel, ok.error());
+  const OctomapFormat format = message.binary ? OctomapFormat::kBinary : OctomapFormat::kFull;
+  const auto change = ingest_.take_octomap(id, message.frame_id, message.data, format, message.resolution);
+  if (!change) return counters_.refused(channel, change.error());
+  inputs_.erase(id);
+  changed(id, *change);
+}
+
+void IngestNode::on_cloud(const std::string& channel, const CloudMessage& message) {
+  counters_.add("bytes_in", static_cast<std::int64_t>(message.points.size() * sizeof(Eigen::Vector3f)));
+  const std::string id = agent_of(channel);
+  if (auto ok = admit(id, message.frame_id, Source::kClouds); !ok) return counters_.refused(channel, ok.error());
+  Scan scan{message.T_agent_sensor, message.max_range, message.points};
+  const auto taken = ingest_.take_cloud(id, message.frame_id, message.sequence, std::move(scan));
+  if (!taken) return counters_.refused(channel, taken.error());
+  if (taken->duplicate) return counters_.add("duplicates." + id);
+  if (taken->lost > 0) counters_.add("gaps." + id, std::min(taken->lost, kMostLostCounted));
+  if (taken->skipped > 0) counters_.add("points_skipped", static_cast<std::int64_t>(taken->skipped));
+  inputs_.erase(id);
+  changed(id, taken->change);
+}
+
+void IngestNode::changed(const std::string& id, const Change& change) {
+  store_.note(id, change);
+  streams_.tell(id, *ingest_.find(id), change);
+}
+
+void IngestNode::flush() {
+  if (auto done = store_.flush(ingest_.agents()); !done) counters_.refused("disk", done.error());
+}
+
+void IngestNode::count() {
+  counters_.set("agents", static_cast<std::int64_t>(ingest_.agents().size()));
+  for (const auto& [id, agent] : ingest_.agents()) counters_.set("known." + id, agent.known);
+}
+
+}  // namespace concord

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "bus/brick_stream.hpp"
+#include "bus/messages.hpp"
+#include "bus/process.hpp"
+#include "bus/recent_answers.hpp"
+#include "ingest/agent_streams.hpp"
+#include "ingest/ingest.hpp"
+#include "ingest/layer_store.hpp"
+#include "ingest/paced_queue.hpp"
+
+namespace concord {
+
+/// Ingest on the bus: hears `in/AGENT/{bricks,digest,octomap,cloud}` and requests, keeps every layer on disk, and says
+/// each as the stream `out/agent/AGENT`. A request is on disk before it is answered.
+class IngestNode {
+ public:
+  /// The bus must not be used after the node has gone.
+  /// @throws std::runtime_error if the layers on disk cannot be used.
+  explicit IngestNode(const NodeContext& context);
+  IngestNode(const IngestNode&) = delete;
+  IngestNode& operator=(const IngestNode&) = delete;
+  /// Writes what is not on disk yet.
+  ~IngestNode();
+
+ private:
+  /// What comes in from one agent as a brick stream.
+  struct Input {
+    std::unique_ptr<BrickReceiver> receiver;
+    std::int64_t last_heard = 0;
+  };
+
+  void restore();
+  void subscribe();
+
+  void on_packet(const std::string& channel, const BrickPacket& packet);
+  void on_digest(const std::string& channel, const BrickDigest& digest);
+  void on_octomap(const std::string& channel, const OctomapMessage& message);
+  void on_cloud(const std::string& channel, const CloudMessage& message);
+
+  [[nodiscard]] Result<void> admit(const std::string& id, const std::string& frame_id, Source source) const;
+  [[nodiscard]] BrickReceiver* receiver_of(const std::string& id, const std::string& frame_id,
+                                           const std::string& channel);
+  [[nodiscard]] std::unique_ptr<BrickReceiver> make_receiver(const std::string& id);
+  void changed(const std::string& id, const Change& change);
+
+  void on_agent_request(const std::string& channel, const AgentRequest& request);
+  void on_map_request(const std::string& channel, const MapRequest& request);
+  void on_downsample(const std::string& channel, const DownsampleRequest& request);
+  [[nodiscard]] Result<std::int64_t> reset(const std::string& id);
+  [[nodiscard]] Result<std::int64_t> remove(const std::string& id);
+  [[nodiscard]] Result<std::int64_t> load(const MapRequest& request);
+  [[nodiscard]] Result<std::int64_t> downsample(const DownsampleRequest& request);
+  [[nodiscard]] Answer answer_to(const std::string& id, const Result<std::int64_t>& count, const char* done);
+
+  void flush();
+  void count();
+
+  Bus& bus_;
+  Counters& counters_;
+  const Site& site_;
+  std::string process_;
+  Ingest ingest_;
+  LayerStore store_;
+  AgentStreams streams_;
+  PacedQueue replies_;
+  RecentAnswers answers_;
+  std::map<std::string, Input> inputs_;
+};
+
+}  // namespace concord

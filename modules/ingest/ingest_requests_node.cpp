@@ -1,0 +1,132 @@
+// The part of IngestNode that does what people ask: resetting, removing and loading agents, coarse views.
+
+#include <cmath>
+
+#include <spdlog/spdlog.h>
+
+#include "core/downsample.hpp"
+#include "core/octomap_reader.hpp"
+#include "ingest/ingest_node.hpp"
+#include "store/whole_file.hpp"
+
+namespace concord {
+namespace {
+
+/// A part of an answer fits one frame on the wire: 90 points are 1080 bytes.
+constexpr std::size_t kPointsInPart = 90;
+constexpr std::size_t kMaxQueuedReplies = 50'000;
+constexpr double kMaxCell = 10.0;  // metres
+
+tl::unexpected<Error> unknown_agent(const std::string& id) {
+  return refuse(Code::kNoAgent, "no agent is called " + id + "; concord agents lists them");
+}
+
+/// Without a format: the .ot if both exist, it says more.
+Result<Bytes> read_map(const std::filesystem::path& folder, const MapRequest& request) {
+  for (const std::string format : {"ot", "bt"}) {
+    if (!request.format.empty() && request.format != format) continue;
+    auto bytes = read_whole_file(folder / (request.map + "." + format), OctomapLimits{}.bytes);
+    if (bytes || bytes.error().code != Code::kNotFound) return bytes;
+  }
+  return refuse(Code::kNoMap, "no saved map is called " + request.map + "; concord maps lists them");
+}
+
+}  // namespace
+
+Answer IngestNode::answer_to(const std::string& id, const Result<std::int64_t>& count, const char* done) {
+  if (count) return {id, process_, true, "OK", done, 0, *count};
+  counters_.refused("request", count.error());
+  return {id, process_, false, name(count.error().code), count.error().message, 0, 0};
+}
+
+void IngestNode::on_agent_request(const std::string&, const AgentRequest& request) {
+  if (answers_.repeat(request.id)) return;
+  const bool is_reset = request.op == AgentRequest::Op::kReset;
+  const auto count = is_reset ? reset(request.agent) : remove(request.agent);
+  answers_.give(answer_to(request.id, count, is_reset ? "reset; waits for a new frame_id" : "removed"));
+}
+
+void IngestNode::on_map_request(const std::string&, const MapRequest& request) {
+  if (request.op != MapRequest::Op::kLoad || answers_.repeat(request.id)) return;
+  answers_.give(answer_to(request.id, load(request), "loaded; it is an agent that waits to be aligned"));
+}
+
+/// Done again when it is asked again: parts may have been lost.
+void IngestNode::on_downsample(const std::string&, const DownsampleRequest& request) {
+  const auto count = downsample(request);
+  const Answer reply = answer_to(request.id, count, "all parts were sent");
+  if (!count) return answer(bus_, reply);
+  replies_.push(kAnswers, encode(reply, bus_.now()));
+}
+
+Result<std::int64_t> IngestNode::reset(const std::string& id) {
+  auto after = ingest_.after_reset(id);
+  if (!after) return tl::unexpected(after.error());
+  if (auto done = store_.replace(id, &*after); !done) return tl::unexpected(done.error());
+  const auto input = inputs_.find(id);
+  if (input != inputs_.end()) input->second.receiver->close_frame();
+  const std::int64_t dropped = ingest_.find(id)->known;
+  const Change change = ingest_.put(id, std::move(*after));
+  streams_.tell(id, *ingest_.find(id), change);
+  spdlog::info("{}: reset", id);
+  return dropped;
+}
+
+Result<std::int64_t> IngestNode::remove(const std::string& id) {
+  const Agent* agent = ingest_.find(id);
+  if (agent == nullptr) return unknown_agent(id);
+  const std::int64_t dropped = agent->known;
+  if (auto done = store_.replace(id, nullptr); !done) return tl::unexpected(done.error());
+  inputs_.erase(id);
+  streams_.end(id);
+  ingest_.remove(id);
+  counters_.set("known." + id, 0);
+  spdlog::info("{}: removed", id);
+  return dropped;
+}
+
+/// Nothing changes before it is on disk; so neither does anything after a refusal.
+Result<std::int64_t> IngestNode::load(const MapRequest& request) {
+  const std::string& id = request.agent.empty() ? request.map : request.agent;
+  if (ingest_.find(id) == nullptr) {
+    if (auto ok = admit(id, request.map, Source::kFile); !ok) return tl::unexpected(ok.error());
+  }
+  const auto file = read_map(site_.state / "maps", request);
+  if (!file) return tl::unexpected(file.error());
+  auto agent = ingest_.from_file(id, request.map, *file);
+  if (!agent) return tl::unexpected(agent.error());
+  if (auto done = store_.replace(id, &*agent); !done) return tl::unexpected(done.error());
+  const Change change = ingest_.put(id, std::move(*agent));
+  streams_.tell(id, *ingest_.find(id), change);
+  spdlog::info("{}: loaded from map {}", id, request.map);
+  return ingest_.find(id)->known;
+}
+
+Result<std::int64_t> IngestNode::downsample(const DownsampleRequest& request) {
+  const Agent* agent = ingest_.find(request.agent);
+  if (agent == nullptr) return unknown_agent(request.agent);
+  if (!(request.resolution >= site_.resolution && request.resolution <= kMaxCell)) {
+    return refuse(Code::kBadResolution, "resolution must lie between the site's " + std::to_string(site_.resolution) +
+                                            " m and " + std::to_string(kMaxCell) + " m");
+  }
+  const std::vector<Eigen::Vector3f> points = concord::downsample(agent->layer, site_.resolution, request.resolution);
+  const std::size_t parts = std::max<std::size_t>(1, (points.size() + kPointsInPart - 1) / kPointsInPart);
+  if (replies_.size() + parts > kMaxQueuedReplies) {
+    return refuse(Code::kTooLarge, "too many points; ask for a coarser resolution, or later");
+  }
+  for (std::size_t part = 0; part < parts; ++part) {
+    const auto first = points.begin() + static_cast<std::ptrdiff_t>(part * kPointsInPart);
+    const auto last = points.begin() + static_cast<std::ptrdiff_t>(std::min((part + 1) * kPointsInPart, points.size()));
+    const Downsampled value{request.id,
+                            request.agent,
+                            agent->frame_id,
+                            request.resolution,
+                            static_cast<std::int32_t>(part),
+                            static_cast<std::int32_t>(parts),
+                            {first, last}};
+    replies_.push("out/downsampled", encode(value, bus_.now()));
+  }
+  return static_cast<std::int64_t>(points.size());
+}
+
+}  // namespace concord

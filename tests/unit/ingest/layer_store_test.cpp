@@ -1,0 +1,193 @@
+#include "ingest/layer_store.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "layers.hpp"
+
+namespace concord {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::box;
+using testing::kResolution;
+using testing::numbered;
+using testing::octomap_of;
+
+class LayerStoreTest : public ::testing::Test {
+ protected:
+  LayerStoreTest() {
+    std::string pattern = (fs::temp_directory_path() / "concord-layers-XXXXXX").string();
+    folder_ = ::mkdtemp(pattern.data());
+    open();
+  }
+  ~LayerStoreTest() override {
+    store_.reset();
+    fs::remove_all(folder_);
+  }
+
+  void open() {
+    store_.reset();
+    store_.emplace(folder_ / "ingest.db", kResolution);
+  }
+  void octomap(const std::string& id, const std::string& frame, const BrickMap& map) {
+    store_->note(id, ingest_.take_octomap(id, frame, octomap_of(map), OctomapFormat::kFull, kResolution).value());
+  }
+  void flush() { ASSERT_TRUE(store_->flush(ingest_.agents())); }
+  /// What a new start finds.
+  LayerStore::Loaded reload() {
+    open();
+    return store_->load().value();
+  }
+  /// Runs SQL on the file behind the store's back.
+  void tamper(const std::string& sql) {
+    store_.reset();
+    ASSERT_TRUE(Database(folder_ / "ingest.db", std::array{""}).execute(sql));
+  }
+
+  fs::path folder_;
+  std::optional<LayerStore> store_;
+  Ingest ingest_{Ingest::Config{.resolution = kResolution}};
+  const BrickMap wall_ = box({-3, -20, 0}, {20, 0, 9}, kOccupied);
+  const BrickMap floor_ = box({-9, -9, 0}, {20, 9, 0}, -100);
+};
+
+TEST_F(LayerStoreTest, layers_come_back_whole) {
+  octomap("robot1", "f", wall_);
+  octomap("robot2", "g", floor_);
+  flush();
+  EXPECT_TRUE(store_->is_flushed());
+  const auto loaded = reload();
+  ASSERT_EQ(loaded.agents.size(), 2U);
+  EXPECT_TRUE(loaded.refused.empty());
+  EXPECT_EQ(loaded.agents[0].first, "robot1");
+  EXPECT_EQ(loaded.agents[0].second.layer, wall_);
+  EXPECT_EQ(loaded.agents[0].second.known, static_cast<std::int64_t>(wall_.known_count()));
+  EXPECT_EQ(loaded.agents[0].second.frame_id, "f");
+  EXPECT_EQ(loaded.agents[0].second.source, Source::kOctomap);
+  EXPECT_EQ(loaded.agents[1].second.layer, floor_);
+}
+
+TEST_F(LayerStoreTest, only_what_was_flushed_survives_a_kill) {
+  octomap("robot1", "f", wall_);
+  flush();
+  store_.reset();
+  const pid_t child = ::fork();
+  if (child == 0) {
+    open();
+    octomap("robot1", "f", floor_);
+    ::kill(::getpid(), SIGKILL);
+  }
+  ::waitpid(child, nullptr, 0);
+  EXPECT_EQ(reload().agents.at(0).second.layer, wall_);
+}
+
+TEST_F(LayerStoreTest, changes_are_written_brick_by_brick) {
+  octomap("robot1", "f", wall_);
+  flush();
+  BrickMap next = wall_;
+  next.set(wall_.sorted_bricks().front(), Brick{});
+  next.set({9, 9, 9}, Brick::uniform({1}, kFree));
+  octomap("robot1", "f", next);
+  flush();
+  EXPECT_EQ(reload().agents.at(0).second.layer, next);
+}
+
+TEST_F(LayerStoreTest, a_new_frame_replaces_the_rows_of_the_old_one) {
+  octomap("robot1", "f", wall_);
+  flush();
+  octomap("robot1", "g", floor_);
+  octomap("robot1", "g", box({0, 0, 0}, {1, 1, 1}, kFree));
+  flush();
+  const auto loaded = reload();
+  EXPECT_EQ(loaded.agents.at(0).second.frame_id, "g");
+  EXPECT_EQ(loaded.agents.at(0).second.layer, box({0, 0, 0}, {1, 1, 1}, kFree));
+}
+
+TEST_F(LayerStoreTest, a_reset_is_on_disk_at_once_and_its_frame_stays_dead) {
+  octomap("robot1", "f", wall_);
+  flush();
+  octomap("robot1", "f", floor_);  // noted, not written: void by then
+  const Agent after = ingest_.after_reset("robot1").value();
+  ASSERT_TRUE(store_->replace("robot1", &after));
+  EXPECT_TRUE(store_->is_flushed());
+  const auto loaded = reload();
+  const Agent& agent = loaded.agents.at(0).second;
+  EXPECT_TRUE(agent.layer.empty());
+  EXPECT_EQ(agent.dead_frames, (std::vector<std::string>{"f"}));
+}
+
+TEST_F(LayerStoreTest, removed_agents_are_remembered_up_to_a_number) {
+  for (int i = 0; i < LayerStore::kMaxRemoved + 2; ++i) ASSERT_TRUE(store_->replace(numbered("r", i), nullptr));
+  octomap("r5", "f", wall_);  // is back
+  flush();
+  const auto loaded = reload();
+  EXPECT_EQ(loaded.removed.size(), LayerStore::kMaxRemoved - 1U);
+  EXPECT_EQ(loaded.removed.front(), "r2");
+  EXPECT_EQ(loaded.removed.back(), numbered("r", LayerStore::kMaxRemoved + 1));
+  EXPECT_EQ(std::count(loaded.removed.begin(), loaded.removed.end(), "r5"), 0);
+  EXPECT_EQ(loaded.agents.size(), 1U);
+}
+
+TEST_F(LayerStoreTest, damaged_bricks_are_told_and_the_rest_stands) {
+  octomap("robot1", "f", wall_);
+  octomap("robot2", "f", floor_);
+  flush();
+  tamper(
+      "UPDATE brick SET voxels = x'ff' WHERE agent = 1 AND x = 0;"
+      "INSERT INTO brick SELECT 1, 1000000000, y, z, voxels FROM brick WHERE agent = 2 LIMIT 1");
+  const auto loaded = reload();
+  ASSERT_EQ(loaded.refused.size(), 1U);
+  EXPECT_EQ(loaded.refused[0].first, "robot1");
+  EXPECT_EQ(loaded.refused[0].second.code, Code::kMalformed);
+  BrickMap expected;
+  wall_.for_each_brick([&](BrickIndex index, const Brick& brick) {
+    if (index.x != 0) expected.set(index, brick);
+  });
+  EXPECT_EQ(loaded.agents.at(0).second.layer, expected);
+  EXPECT_EQ(loaded.agents.at(1).second.layer, floor_);
+}
+
+TEST_F(LayerStoreTest, a_damaged_agent_does_not_keep_the_others_from_coming_back) {
+  octomap("robot1", "f", wall_);
+  octomap("robot2", "f", floor_);
+  flush();
+  tamper("UPDATE agent SET frame_id = '../x' WHERE id = 'robot1'");
+  const auto loaded = reload();
+  ASSERT_EQ(loaded.refused.size(), 1U);
+  ASSERT_EQ(loaded.agents.size(), 1U);
+  EXPECT_EQ(loaded.agents[0].first, "robot2");
+}
+
+TEST_F(LayerStoreTest, another_resolution_is_refused_at_start) {
+  store_.reset();
+  EXPECT_THROW(LayerStore(folder_ / "ingest.db", 2 * kResolution), std::runtime_error);
+  EXPECT_NO_THROW(open());
+}
+
+TEST_F(LayerStoreTest, a_write_that_fails_writes_nothing_and_is_made_up_for) {
+  tamper("CREATE TRIGGER full BEFORE INSERT ON brick WHEN new.x = 77 BEGIN SELECT RAISE(ABORT, 'no room'); END");
+  open();
+  octomap("robot1", "f", wall_);
+  octomap("robot2", "f", box({77 * 8, 0, 0}, {77 * 8, 0, 0}, kFree));
+  const auto failed = store_->flush(ingest_.agents());
+  ASSERT_FALSE(failed);
+  EXPECT_EQ(failed.error().code, Code::kIo);
+  EXPECT_NE(failed.error().message.find("no room"), std::string::npos);
+  EXPECT_FALSE(store_->is_flushed());
+  EXPECT_TRUE(store_->load().value().agents.empty());
+
+  octomap("robot2", "f", wall_);
+  flush();
+  const auto loaded = reload();
+  EXPECT_EQ(loaded.agents.at(0).second.layer, wall_);
+  EXPECT_EQ(loaded.agents.at(1).second.layer, wall_);
+}
+
+}  // namespace
+}  // namespace concord
