@@ -38,10 +38,7 @@ class FreeSpace {
   [[nodiscard]] static Cell tile_of(Cell cell) { return {cell.x >> 6, cell.y >> 6}; }
 
  private:
-  struct TileHash {
-    std::size_t operator()(const Cell& c) const { return IndexHash{}(BrickIndex{c.x, c.y, 0}); }
-  };
-  using Tiles = std::unordered_map<Cell, std::unique_ptr<const Rows>, TileHash>;
+  using Tiles = std::unordered_map<Cell, std::unique_ptr<const Rows>, CellHash>;
 
   [[nodiscard]] const Rows& free_rows(Cell tile);
   [[nodiscard]] const Rows& edge_rows(Cell tile);

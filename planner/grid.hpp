@@ -16,6 +16,10 @@ struct Cell {
   auto operator<=>(const Cell&) const = default;
 };
 
+struct CellHash {
+  std::size_t operator()(const Cell& c) const { return IndexHash{}(BrickIndex{c.x, c.y, 0}); }
+};
+
 /// The voxels whose centre lies in [zmin, zmax): those with first <= z < last.
 struct Band {
   std::int32_t first = 0, last = 1;

@@ -138,7 +138,7 @@ Path Planner::request(const PathRequest& request, double radius, const Moment& m
     now.points = std::move(result.points);
   }
   remember(now.path);
-  const Path path = now.path;
+  Path path = now.path;
   if (path.active) active_.emplace(request.robot, std::move(now));
   return path;
 }

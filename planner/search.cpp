@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::int64_t kUnreached = std::numeric_limits<std::int64_t>::max();
 constexpr std::uint8_t kFromAnchor = 8;
+constexpr std::size_t kBlockCells = std::size_t{FreeSpace::kSide} * FreeSpace::kSide;
 
 struct Step {
   int dx, dy;
@@ -30,13 +31,9 @@ struct Block {
 
   const FreeSpace::Rows& open;
   FreeSpace::Rows closed;
-  std::array<std::int64_t, 64 * 64> cost;
-  std::array<std::uint8_t, 64 * 64> came_by;  ///< index into kSteps, or kFromAnchor
-  std::array<Block*, 9> around;               ///< neighbours that have been looked up; [4] is unused
-};
-
-struct BlockHash {
-  std::size_t operator()(const Cell& c) const { return IndexHash{}(BrickIndex{c.x, c.y, 0}); }
+  std::array<std::int64_t, kBlockCells> cost;
+  std::array<std::uint8_t, kBlockCells> came_by;  ///< index into kSteps, or kFromAnchor
+  std::array<Block*, 9> around;                   ///< neighbours that have been looked up; [4] is unused
 };
 
 int local_of(Cell cell) { return (cell.x & 63) | (cell.y & 63) << 6; }
@@ -159,7 +156,7 @@ class AStar {
 
   FreeSpace& space_;
   std::span<const Anchor> goals_;
-  std::unordered_map<Cell, std::unique_ptr<Block>, BlockHash> blocks_;
+  std::unordered_map<Cell, std::unique_ptr<Block>, CellHash> blocks_;
   std::priority_queue<Entry> queue_;
   Cell last_tile_;
   Block* last_ = nullptr;
