@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::string_view kBinaryTitle = "# Octomap OcTree binary file";
 constexpr std::string_view kFullTitle = "# Octomap OcTree file";
-constexpr std::size_t kMaxHeaderBytes = 64 * 1024;
+constexpr std::size_t kMaxHeaderBytes = 65'536;
 
 /// Takes one line and its end off the front of `text`; nullopt when there is no line end.
 std::optional<std::string_view> take_line(std::string_view& text) {
@@ -101,7 +101,7 @@ Result<OctomapHeader> read_octomap_header(ByteSpan& in) {
   while (const std::optional<std::string_view> line = take_line(text)) {
     if (line->starts_with('#')) continue;
     if (trimmed(*line) == "data") {
-      const auto header = checked(binary ? OctomapFormat::kBinary : OctomapFormat::kFull, fields);
+      auto header = checked(binary ? OctomapFormat::kBinary : OctomapFormat::kFull, fields);
       if (header) in = in.subspan(limit - text.size());
       return header;
     }
