@@ -1,8 +1,9 @@
 #include "core/brick_kernels.hpp"
 
+#include <algorithm>
 #include <bit>
+#include <cstdlib>
 
-#include "core/brick_fold.hpp"
 #include "core/brick_kernels_avx2.hpp"
 
 namespace concord {
@@ -70,15 +71,61 @@ bool pull(const Key* cells, const std::uint64_t* near, const PullSteps& steps, c
 }
 
 void widen(const std::uint64_t* known, std::uint64_t* near, int first, int last) {
-  fold_loops::widen_planes(known, near, first, last);
+  for (int z = first; z < last; ++z) {
+    const std::uint64_t* row = known + SourceBox::near_row(0, z);
+    std::array<std::uint64_t, SourceBox::kNearRow> wide;  // from row -1 on
+    for (int y = 0; y < SourceBox::kNearRow; ++y) wide[y] = row[y - 1] | row[y - 1] << 1 | row[y - 1] >> 1;
+    for (int plane = z - 1; plane <= z + 1; ++plane) {
+      std::uint64_t* out = near + SourceBox::near_row(0, plane);
+      for (int y = 0; y < SourceBox::kSide; ++y) out[y] |= wide[y] | wide[y + 1] | wide[y + 2];
+    }
+  }
 }
 
+/// What all layers say about one voxel.
+struct Claims {
+  std::int64_t sum = 0;
+  std::int64_t weight = 0;
+  Key largest = 0;
+  bool occupied = false;
+  bool free = false;
+
+  void add(Key key, std::int32_t w) {
+    if (key == 0) return;
+    const LogOdds l = log_odds_of(key);
+    sum += std::int64_t{w} * l;
+    weight += w;
+    largest = std::max(largest, key);
+    occupied |= l >= kConflictOccupied;
+    free |= l <= kConflictFree;
+  }
+  /// Rounded half away from zero; a sum below zero stays below zero.
+  [[nodiscard]] Key mean() const {
+    if (weight == 0) return 0;
+    const std::int64_t rounded = (2 * std::abs(sum) + weight) / (2 * weight);
+    const std::int64_t negative = rounded == 0 ? -1 : -rounded;
+    return key_of(static_cast<LogOdds>(sum < 0 ? negative : rounded));
+  }
+};
+
 void mean(const Key* const* bricks, const std::int32_t* weights, int layers, Key* out, VoxelMask& conflicts) {
-  fold_loops::mean_of(bricks, weights, layers, out, conflicts);
+  conflicts = {};
+  for (int i = 0; i < kBrickVoxels; ++i) {
+    Claims claims;
+    for (int layer = 0; layer < layers; ++layer) claims.add(bricks[layer][i], weights[layer]);
+    out[i] = claims.mean();
+    conflicts[i / 64] |= std::uint64_t{claims.occupied && claims.free} << (i % 64);
+  }
 }
 
 void table(const Key* const* bricks, int layers, Key* out, VoxelMask& conflicts) {
-  fold_loops::table_of(bricks, layers, out, conflicts);
+  conflicts = {};
+  for (int i = 0; i < kBrickVoxels; ++i) {
+    Claims claims;
+    for (int layer = 0; layer < layers; ++layer) claims.add(bricks[layer][i], 1);
+    out[i] = claims.largest;
+    conflicts[i / 64] |= std::uint64_t{claims.occupied && claims.free} << (i % 64);
+  }
 }
 
 }  // namespace

@@ -7,8 +7,6 @@
 
 #include <immintrin.h>
 
-#include "core/brick_fold.hpp"
-
 #define CONCORD_AVX2 __attribute__((target("avx2,popcnt,bmi")))
 
 namespace concord {
@@ -40,6 +38,7 @@ constexpr RowShuffles kShuffles = [] {
 
 CONCORD_AVX2 inline __m128i load(const void* from) { return _mm_loadu_si128(static_cast<const __m128i*>(from)); }
 CONCORD_AVX2 inline __m256i load256(const void* from) { return _mm256_loadu_si256(static_cast<const __m256i*>(from)); }
+CONCORD_AVX2 inline void store256(void* to, __m256i value) { _mm256_storeu_si256(static_cast<__m256i*>(to), value); }
 CONCORD_AVX2 inline void store(void* to, __m128i value) { _mm_storeu_si128(static_cast<__m128i*>(to), value); }
 
 CONCORD_AVX2 int count(const VoxelMask& mask) {
@@ -134,6 +133,11 @@ CONCORD_AVX2 std::uint64_t active_blocks(const std::uint64_t* near, const PullSt
   return active;
 }
 
+inline void put_pair(Key* to, std::int64_t pair) {
+  const auto two = static_cast<std::uint32_t>(pair);
+  std::memcpy(to, &two, sizeof(two));
+}
+
 CONCORD_AVX2 bool pull(const Key* cells, const std::uint64_t* near, const PullSteps& steps, const FixedPoint& origin,
                        Key* out) {
   std::uint64_t active = active_blocks(near, steps, origin);
@@ -159,29 +163,130 @@ CONCORD_AVX2 bool pull(const Key* cells, const std::uint64_t* near, const PullSt
     const std::int64_t lower = _mm256_extract_epi64(keys, 0);  // z of the block's first voxel
     const std::int64_t upper = _mm256_extract_epi64(keys, 2);
     Key* corner = out + (block & 3) * 2 + (block >> 2 & 3) * 16 + (block >> 4) * 128;
-    const auto put = [&](int offset, std::int64_t pair) {
-      const auto two = static_cast<std::uint32_t>(pair);
-      std::memcpy(corner + offset, &two, sizeof(two));
-    };
-    put(0, lower);
-    put(8, lower >> 32);
-    put(64, upper);
-    put(72, upper >> 32);
+    put_pair(corner, lower);
+    put_pair(corner + 8, lower >> 32);
+    put_pair(corner + 64, upper);
+    put_pair(corner + 72, upper >> 32);
   }
   return true;
 }
 
-CONCORD_AVX2 void widen(const std::uint64_t* known, std::uint64_t* near, int first, int last) {
-  fold_loops::widen_planes(known, near, first, last);
+CONCORD_AVX2 inline __m256i wide(const std::uint64_t* row) {
+  const __m256i bits = load256(row);
+  return _mm256_or_si256(bits, _mm256_or_si256(_mm256_slli_epi64(bits, 1), _mm256_srli_epi64(bits, 1)));
 }
 
+CONCORD_AVX2 void widen(const std::uint64_t* known, std::uint64_t* near, int first, int last) {
+  for (int z = first; z < last; ++z) {
+    for (int y = 0; y < SourceBox::kSide; y += 4) {
+      const std::uint64_t* row = known + SourceBox::near_row(y, z);
+      const __m256i bits = _mm256_or_si256(wide(row), _mm256_or_si256(wide(row - 1), wide(row + 1)));
+      for (int plane = z - 1; plane <= z + 1; ++plane) {
+        std::uint64_t* out = near + SourceBox::near_row(y, plane);
+        store256(out, _mm256_or_si256(load256(out), bits));
+      }
+    }
+  }
+}
+
+/// What layers say about 16 voxels, as far as both policies need it.
+struct Claims {
+  __m256i unknown, occupied, free;
+};
+
+CONCORD_AVX2 inline Claims no_claims() {
+  return {_mm256_set1_epi16(-1), _mm256_setzero_si256(), _mm256_setzero_si256()};
+}
+
+/// @return which of the voxels the layer does not know.
+CONCORD_AVX2 inline __m256i add(Claims& claims, __m256i keys, __m256i log_odds) {
+  const __m256i unknown = _mm256_cmpeq_epi16(keys, _mm256_setzero_si256());
+  const __m256i occupied = _mm256_cmpgt_epi16(log_odds, _mm256_set1_epi16(kConflictOccupied - 1));
+  const __m256i free = _mm256_cmpgt_epi16(_mm256_set1_epi16(kConflictFree + 1), log_odds);
+  claims.unknown = _mm256_and_si256(claims.unknown, unknown);
+  claims.occupied = _mm256_or_si256(claims.occupied, occupied);
+  claims.free = _mm256_or_si256(claims.free, _mm256_andnot_si256(unknown, free));
+  return unknown;
+}
+
+CONCORD_AVX2 inline void put_conflicts(const Claims& claims, int first, VoxelMask& conflicts) {
+  const __m256i both = _mm256_and_si256(claims.occupied, claims.free);
+  const __m128i bytes = _mm_packs_epi16(_mm256_castsi256_si128(both), _mm256_extracti128_si256(both, 1));
+  conflicts[first / 64] |= static_cast<std::uint64_t>(static_cast<unsigned>(_mm_movemask_epi8(bytes))) << (first % 64);
+}
+
+/// sum / weight rounded half away from zero; a sum below zero stays below zero. The quotient of floats is at most one
+/// off, and the remainder tells. @pre 2 |sum| + weight < 2^31.
+CONCORD_AVX2 inline __m256i rounded_mean(__m256i sum, __m256i weight) {
+  const __m256i divisor = _mm256_max_epi32(weight, _mm256_set1_epi32(1));
+  const __m256i twice = _mm256_add_epi32(divisor, divisor);
+  const __m256i magnitude = _mm256_abs_epi32(sum);
+  const __m256i dividend = _mm256_add_epi32(_mm256_add_epi32(magnitude, magnitude), divisor);
+  const __m256i guess = _mm256_cvttps_epi32(_mm256_div_ps(_mm256_cvtepi32_ps(dividend), _mm256_cvtepi32_ps(twice)));
+  const __m256i rest = _mm256_sub_epi32(dividend, _mm256_mullo_epi32(guess, twice));
+  const __m256i too_small = _mm256_cmpgt_epi32(rest, _mm256_sub_epi32(twice, _mm256_set1_epi32(1)));
+  const __m256i too_large = _mm256_srai_epi32(rest, 31);
+  const __m256i rounded = _mm256_add_epi32(_mm256_sub_epi32(guess, too_small), too_large);
+  const __m256i below_zero = _mm256_srai_epi32(sum, 31);
+  const __m256i lost_sign = _mm256_and_si256(below_zero, _mm256_cmpeq_epi32(rounded, _mm256_setzero_si256()));
+  return _mm256_add_epi32(_mm256_sign_epi32(rounded, _mm256_or_si256(below_zero, _mm256_set1_epi32(1))), lost_sign);
+}
+
+/// Two layers at a time: their values side by side, so that one instruction multiplies and adds both.
 CONCORD_AVX2 void mean(const Key* const* bricks, const std::int32_t* weights, int layers, Key* out,
                        VoxelMask& conflicts) {
-  fold_loops::mean_of(bricks, weights, layers, out, conflicts);
+  constexpr int kMaxTotal = 32767;
+  int total = 0;
+  for (int layer = 0; layer < layers && total <= kMaxTotal; ++layer) total += weights[layer];
+  if (total > kMaxTotal) return portable_kernels().mean(bricks, weights, layers, out, conflicts);
+  const __m256i bias = _mm256_set1_epi16(static_cast<short>(0x8000));
+  conflicts = {};
+  for (int first = 0; first < kBrickVoxels; first += 16) {
+    Claims claims = no_claims();
+    __m256i sum_low = _mm256_setzero_si256();
+    __m256i sum_high = sum_low;
+    __m256i weight_low = sum_low;
+    __m256i weight_high = sum_low;
+    for (int layer = 0; layer < layers; layer += 2) {
+      const bool has_second = layer + 1 < layers;
+      const __m256i a = load256(bricks[layer] + first);
+      const __m256i b = has_second ? load256(bricks[layer + 1] + first) : _mm256_setzero_si256();
+      const __m256i pair = _mm256_set1_epi32((has_second ? weights[layer + 1] : 0) << 16 | weights[layer]);
+      const __m256i a_raw = _mm256_xor_si256(a, bias);
+      const __m256i b_raw = _mm256_xor_si256(b, bias);
+      const __m256i a_unknown = add(claims, a, a_raw);
+      const __m256i b_unknown = add(claims, b, b_raw);
+      const __m256i a_value = _mm256_andnot_si256(a_unknown, a_raw);
+      const __m256i b_value = _mm256_andnot_si256(b_unknown, b_raw);
+      sum_low = _mm256_add_epi32(sum_low, _mm256_madd_epi16(_mm256_unpacklo_epi16(a_value, b_value), pair));
+      sum_high = _mm256_add_epi32(sum_high, _mm256_madd_epi16(_mm256_unpackhi_epi16(a_value, b_value), pair));
+      // A mask is -1 where it is set: what is unknown takes its weight away again.
+      const __m256i both = _mm256_set1_epi32(weights[layer] + (has_second ? weights[layer + 1] : 0));
+      const __m256i missing_low = _mm256_madd_epi16(_mm256_unpacklo_epi16(a_unknown, b_unknown), pair);
+      const __m256i missing_high = _mm256_madd_epi16(_mm256_unpackhi_epi16(a_unknown, b_unknown), pair);
+      weight_low = _mm256_add_epi32(weight_low, _mm256_add_epi32(both, missing_low));
+      weight_high = _mm256_add_epi32(weight_high, _mm256_add_epi32(both, missing_high));
+    }
+    const __m256i mean = _mm256_packs_epi32(rounded_mean(sum_low, weight_low), rounded_mean(sum_high, weight_high));
+    store256(out + first, _mm256_andnot_si256(claims.unknown, _mm256_xor_si256(mean, bias)));
+    put_conflicts(claims, first, conflicts);
+  }
 }
 
 CONCORD_AVX2 void table(const Key* const* bricks, int layers, Key* out, VoxelMask& conflicts) {
-  fold_loops::table_of(bricks, layers, out, conflicts);
+  const __m256i bias = _mm256_set1_epi16(static_cast<short>(0x8000));
+  conflicts = {};
+  for (int first = 0; first < kBrickVoxels; first += 16) {
+    Claims claims = no_claims();
+    __m256i largest = _mm256_setzero_si256();
+    for (int layer = 0; layer < layers; ++layer) {
+      const __m256i keys = load256(bricks[layer] + first);
+      add(claims, keys, _mm256_xor_si256(keys, bias));
+      largest = _mm256_max_epu16(largest, keys);
+    }
+    store256(out + first, largest);
+    put_conflicts(claims, first, conflicts);
+  }
 }
 
 constexpr BrickKernels kKernels{count, expand, pack, widen, pull, mean, table};
