@@ -13,6 +13,8 @@ constexpr std::int64_t kFlushPeriod = 2'000'000;
 constexpr std::int64_t kCountPeriod = 1'000'000;
 /// A brick stream speaks each second while its sender lives.
 constexpr std::int64_t kStreamSilence = 3'000'000;
+/// A bus never forgets a timer; so their number is bounded, also for ids that never send anything good.
+constexpr int kMaxReceiversMade = 2000;
 constexpr std::int64_t kMostLostCounted = 1'000'000;  // a hostile number must not overflow a sum
 
 /// AGENT of `in/AGENT/...`.
@@ -99,9 +101,8 @@ BrickReceiver* IngestNode::receiver_of(const std::string& id, const std::string&
   }
   auto it = inputs_.find(id);
   if (it == inputs_.end()) {
-    // Also bounded for ids that never send anything good.
-    if (static_cast<std::int64_t>(inputs_.size()) >= 2 * site_.ingest.max_agents) {
-      counters_.refused(channel, {Code::kTooLarge, "too many streams; raise ingest.max_agents in the site file"});
+    if (receivers_made_ >= kMaxReceiversMade) {
+      counters_.refused(channel, {Code::kTooLarge, "too many streams have come and gone; restart ingest"});
       return nullptr;
     }
     it = inputs_.emplace(id, Input{make_receiver(id), 0}).first;
@@ -125,6 +126,7 @@ std::unique_ptr<BrickReceiver> IngestNode::make_receiver(const std::string& id) 
     store_.note(id, index);
     streams_.touch(id, index);
   };
+  ++receivers_made_;
   const BrickReceiver::Config config{.stream = "in/" + id, .resolution = site_.resolution};
   return std::make_unique<BrickReceiver>(bus_, counters_, config, std::move(events));
 }

@@ -70,6 +70,7 @@ class IngestNode {
   PacedQueue replies_;
   RecentAnswers answers_;
   std::map<std::string, Input> inputs_;
+  int receivers_made_ = 0;
 };
 
 }  // namespace concord
