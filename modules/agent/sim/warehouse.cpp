@@ -97,9 +97,9 @@ class Builder {
 
  private:
   void feature(const char* name, const std::vector<std::size_t>& solids, const AlignedBox3d& region) {
-    AlignedBox3d all;
-    for (const std::size_t solid : solids) all.extend(bounds(world.solids[solid]));
-    world.features.push_back({name, solids, region, all});
+    const bool one_thing = solids.size() == 1 && solids[0] != floor_;
+    world.features.push_back({name, solids, region, std::nullopt});
+    if (one_thing) world.features.back().edit_box = bounds(world.solids[solids[0]]);
   }
 
   void goods(double x, double y, double z) {

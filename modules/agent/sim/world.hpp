@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,8 +28,8 @@ struct Solid {
 struct Feature {
   std::string name;
   std::vector<std::size_t> solids;
-  Eigen::AlignedBox3d region;    ///< only surface in here counts: not what touches the floor or another thing
-  Eigen::AlignedBox3d edit_box;  ///< what a person would pin occupied
+  Eigen::AlignedBox3d region;  ///< only surface in here counts: not what touches the floor or another thing
+  std::optional<Eigen::AlignedBox3d> edit_box;  ///< what a person would pin occupied, where one box will do
 };
 
 /// A straight way that a robot is asked to take.
