@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cassert>
 
+#include "core/brick_kernels.hpp"
+
 namespace concord {
 namespace {
 
-int count_bits(const VoxelMask& mask) {
-  int count = 0;
-  for (const std::uint64_t word : mask) count += std::popcount(word);
-  return count;
-}
+int count_bits(const VoxelMask& mask) { return brick_kernels().count(mask); }
 
 }  // namespace
 
@@ -27,16 +25,9 @@ Brick& Brick::operator=(const Brick& other) {
 }
 
 Brick Brick::from_dense(const DenseBrick& dense) {
-  VoxelMask known{};
-  DenseBrick packed;
-  std::size_t count = 0;
-  for (int local = 0; local < kBrickVoxels; ++local) {
-    const LogOdds l = dense[local];
-    known[local / 64] |= std::uint64_t{is_known(l)} << (local % 64);
-    packed[count] = l;
-    count += is_known(l);
-  }
-  return from_packed(known, {packed.data(), count});
+  KeyBrick keys;
+  for (int local = 0; local < kBrickVoxels; ++local) keys[local] = key_of(dense[local]);
+  return pack(keys.data());
 }
 
 Brick Brick::uniform(const VoxelMask& known, LogOdds value) {
@@ -51,7 +42,7 @@ Brick Brick::uniform(const VoxelMask& known, LogOdds value) {
 Brick Brick::from_packed(const VoxelMask& known, std::span<const LogOdds> values) {
   assert(static_cast<std::size_t>(count_bits(known)) == values.size());
   if (values.empty()) return {};
-  if (std::all_of(values.begin(), values.end(), [&](LogOdds l) { return l == values.front(); })) {
+  if (std::equal(values.begin() + 1, values.end(), values.begin())) {  // each equals the one before it
     return uniform(known, values.front());
   }
   Brick brick;
@@ -63,8 +54,9 @@ Brick Brick::from_packed(const VoxelMask& known, std::span<const LogOdds> values
 }
 
 void Brick::to_dense(DenseBrick& out) const {
-  out.fill(kUnknown);
-  for_each([&](int local, LogOdds l) { out[local] = l; });
+  KeyBrick keys;
+  expand(*this, keys.data());
+  for (int local = 0; local < kBrickVoxels; ++local) out[local] = log_odds_of(keys[local]);
 }
 
 LogOdds Brick::at(int local) const {
@@ -79,9 +71,8 @@ LogOdds Brick::at(int local) const {
 
 VoxelMask Brick::occupied() const {
   if (is_uniform()) return is_occupied(value_) ? known_ : VoxelMask{};
-  VoxelMask mask{};
-  for_each([&](int local, LogOdds l) { mask[local / 64] |= std::uint64_t{is_occupied(l)} << (local % 64); });
-  return mask;
+  KeyBrick keys;
+  return expand(*this, keys.data());
 }
 
 int Brick::occupied_count() const { return count_bits(occupied()); }

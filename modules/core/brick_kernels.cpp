@@ -143,4 +143,17 @@ const BrickKernels& brick_kernels() {
   return *kKernels;
 }
 
+VoxelMask expand(const Brick& brick, Key* cells, int row, int plane) {
+  const LogOdds uniform = brick.is_uniform() && !brick.empty() ? brick.uniform_value() : kUnknown;
+  const LogOdds* values = brick.is_uniform() ? &uniform : brick.packed().data();
+  return brick_kernels().expand(brick.known(), values, brick.is_uniform(), cells, row, plane);
+}
+
+Brick pack(const Key* keys) {
+  VoxelMask known;
+  std::array<LogOdds, kBrickVoxels + 8> packed;
+  const int size = brick_kernels().pack(keys, known, packed.data());
+  return Brick::from_packed(known, {packed.data(), static_cast<std::size_t>(size)});
+}
+
 }  // namespace concord

@@ -70,4 +70,9 @@ struct BrickKernels {
 /// For this machine.
 [[nodiscard]] const BrickKernels& brick_kernels();
 
+/// A brick's keys as rows of 8, `row` and `plane` cells apart. Returns the occupied voxels.
+VoxelMask expand(const Brick& brick, Key* cells, int row = kBrickSide, int plane = kBrickSide * kBrickSide);
+/// From kBrickVoxels keys.
+[[nodiscard]] Brick pack(const Key* keys);
+
 }  // namespace concord

@@ -29,19 +29,6 @@ struct Share {
   std::int32_t weight = 1;
 };
 
-void expand(const Brick& brick, Key* keys) {
-  const LogOdds uniform = brick.is_uniform() ? brick.uniform_value() : kUnknown;
-  const LogOdds* values = brick.is_uniform() ? &uniform : brick.packed().data();
-  brick_kernels().expand(brick.known(), values, brick.is_uniform(), keys, kBrickSide, kBrickSide * kBrickSide);
-}
-
-Brick pack(const Key* keys) {
-  VoxelMask known;
-  std::array<LogOdds, kBrickVoxels + 8> packed;
-  const int count = brick_kernels().pack(keys, known, packed.data());
-  return Brick::from_packed(known, {packed.data(), static_cast<std::size_t>(count)});
-}
-
 void apply_pins(const PinBrick& pins, Key* keys, VoxelMask& conflicts) {
   for (int word = 0; word < 8; ++word) {
     for (std::uint64_t bits = pins.occupied[word]; bits != 0; bits &= bits - 1) {
@@ -57,42 +44,44 @@ void apply_pins(const PinBrick& pins, Key* keys, VoxelMask& conflicts) {
 /// Folds tile after tile; keeps the memory that this takes.
 class TileFolder {
  public:
-  /// Calls `emit(FoldedBrick)` for each brick in `entry`, in order of position.
+  /// Calls `emit(FoldedBrick)` for each brick in `entry`, in order of position; with `only_known`, not for bricks of
+  /// which no layer and no pin knows anything.
   template <class Emit>
-  void fold(const Plan& plan, const BrickSet::Entry& entry, Emit&& emit) {
-    pull(plan, entry);
-    for (std::uint64_t bits = entry.bricks; bits != 0; bits &= bits - 1) {
-      emit(fold_brick(plan, entry.tile, std::countr_zero(bits)));
+  void fold(const Plan& plan, const BrickSet::Entry& entry, bool only_known, Emit&& emit) {
+    std::uint64_t bricks = pull(plan, entry);
+    if (!only_known || !plan.pins.empty()) bricks = entry.bricks;
+    for (; bricks != 0; bricks &= bricks - 1) {
+      FoldedBrick folded = fold_brick(plan, entry.tile, std::countr_zero(bricks));
+      if (!only_known || !folded.values.empty()) emit(std::move(folded));
     }
   }
 
  private:
-  void pull(const Plan& plan, const BrickSet::Entry& entry) {
+  /// Returns the bricks of which any layer may know something.
+  std::uint64_t pull(const Plan& plan, const BrickSet::Entry& entry) {
     const std::size_t count = plan.layers.size();
     if (pulled_.size() < count) pulled_.resize(count);
+    std::uint64_t bricks = 0;
     for (std::size_t i = 0; i < count; ++i) {
-      pulled_[i].bricks = 0;
-      if (plan.transforms[i].brick_shift().has_value()) continue;
       puller_.pull(*plan.layers[i].map, plan.transforms[i], entry.tile, entry.bricks, pulled_[i]);
+      bricks |= pulled_[i].bricks;
     }
+    return bricks;
   }
 
-  void find_shares(const Plan& plan, BrickIndex index, int local) {
+  void find_shares(const Plan& plan, int local) {
     shares_.clear();
     for (std::size_t i = 0; i < plan.layers.size(); ++i) {
-      const Layer& layer = plan.layers[i];
-      if (const auto& shift = plan.transforms[i].brick_shift()) {
-        const Brick* brick = layer.map->find(BrickIndex{index.x - shift->x, index.y - shift->y, index.z - shift->z});
-        if (brick != nullptr) shares_.push_back({brick, nullptr, layer.weight});
-      } else if ((pulled_[i].bricks >> local & 1) != 0) {
-        shares_.push_back({nullptr, pulled_[i].brick(local), layer.weight});
-      }
+      const LayerTile& tile = pulled_[i];
+      if ((tile.bricks >> local & 1) == 0) continue;
+      const Brick* brick = tile.is_whole ? tile.whole[local] : nullptr;
+      shares_.push_back({brick, tile.is_whole ? nullptr : tile.keys[local].data(), plan.layers[i].weight});
     }
   }
 
   FoldedBrick fold_brick(const Plan& plan, TileIndex tile, int local) {
     FoldedBrick out{brick_at(tile, local), {}, {}};
-    find_shares(plan, out.index, local);
+    find_shares(plan, local);
     const PinBrick* pins = plan.pins.empty() ? nullptr : plan.pins.find(out.index);
     if (shares_.empty() && pins == nullptr) return out;
     if (shares_.size() == 1 && pins == nullptr) {
@@ -124,7 +113,7 @@ class TileFolder {
   }
 
   TilePuller puller_;
-  std::vector<PulledTile> pulled_;  // by layer
+  std::vector<LayerTile> pulled_;  // by layer
   std::vector<Share> shares_;
   std::vector<KeyBrick> expanded_;
   std::vector<const Key*> keys_;
@@ -174,9 +163,8 @@ FoldedTile fold_tile(const Plan& plan, const BrickSet::Entry& entry, std::vector
   FoldedTile out{entry.tile, {}, {}};
   values.clear();
   conflicts.clear();
-  tile_folder().fold(plan, entry, [&](FoldedBrick folded) {
+  tile_folder().fold(plan, entry, true, [&](FoldedBrick folded) {
     const std::uint64_t bit = std::uint64_t{1} << local_of(folded.index);
-    if (folded.values.empty()) return;
     values.push_back(std::move(folded.values));
     out.values.present |= bit;
     if (folded.conflicts == VoxelMask{}) return;
@@ -199,7 +187,7 @@ std::vector<FoldedBrick> fold(std::span<const Layer> layers, const PinMap& pins,
   std::vector<std::vector<FoldedBrick>> parts(std::max(threads, 1));
   in_parts(tiles.size(), static_cast<int>(parts.size()), [&](std::size_t first, std::size_t last, int part) {
     for (std::size_t i = first; i < last; ++i) {
-      tile_folder().fold(plan, tiles[i], [&](FoldedBrick folded) { parts[part].push_back(std::move(folded)); });
+      tile_folder().fold(plan, tiles[i], false, [&](FoldedBrick folded) { parts[part].push_back(std::move(folded)); });
     }
   });
   for (std::size_t part = 1; part < parts.size(); ++part) {

@@ -54,6 +54,33 @@ BrickBox box_of(std::uint64_t bricks) {
   return {{ends[0][0], ends[1][0], ends[2][0]}, {ends[0][1], ends[1][1], ends[2][1]}};
 }
 
+// Calls `visit(BrickIndex, const Brick&)` for the map's bricks from `low` to `high`, both included.
+template <class Visit>
+void visit_bricks(const BrickMap& map, BrickIndex low, BrickIndex high, Visit&& visit) {
+  const TileIndex first = tile_of(low);
+  const TileIndex last = tile_of(high);
+  const auto from = [](std::int32_t bound, std::int32_t tile) { return std::max(bound - tile * kTileSide, 0); };
+  const auto to = [](std::int32_t bound, std::int32_t tile) {
+    return std::min(bound - tile * kTileSide, kTileSide - 1);
+  };
+  for (std::int32_t z = first.z; z <= last.z; ++z) {
+    for (std::int32_t y = first.y; y <= last.y; ++y) {
+      for (std::int32_t x = first.x; x <= last.x; ++x) {
+        const TileIndex index{x, y, z};
+        const Tile* tile = map.find(index);
+        if (tile == nullptr) continue;
+        const std::uint64_t inside =
+            tile_box({from(low.x, x), from(low.y, y), from(low.z, z)}, {to(high.x, x), to(high.y, y), to(high.z, z)});
+        const Brick* brick = tile->bricks.data();
+        for (std::uint64_t bits = tile->present; bits != 0; bits &= bits - 1, ++brick) {
+          const int local = std::countr_zero(bits);
+          if ((inside >> local & 1) != 0) visit(brick_at(index, local), *brick);
+        }
+      }
+    }
+  }
+}
+
 // A point of the map, in voxels, relative to a tile's first corner. Rounded before the difference is taken, so that
 // the fraction does not depend on the tile. @pre within 100 voxels of the tile.
 FixedPoint push_origin(const Eigen::Vector3d& p, TileIndex tile) {
@@ -112,11 +139,14 @@ CellRange cells_under(const LatticeTransform& transform, const Eigen::Vector3d& 
 TilePuller::TilePuller() : cells_(SourceBox::kCells), known_(SourceBox::kNearRows), near_(SourceBox::kNearRows) {}
 
 void TilePuller::pull(const BrickMap& layer, const LatticeTransform& transform, TileIndex tile, std::uint64_t wanted,
-                      PulledTile& out) {
+                      LayerTile& out) {
   out.bricks = 0;
+  out.is_whole = transform.brick_shift().has_value();
+  if (out.is_whole) return take_whole(layer, *transform.brick_shift(), tile, wanted, out);
   const Region region = region_of(transform, tile, wanted);
   const std::uint64_t reach = find_sources(layer, transform, tile, wanted, region);
   if (reach == 0) return;
+  out.keys.resize(kTileBricks);
   fill();
   brick_kernels().widen(known_.data(), near_.data(), low_plane_, high_plane_);
   const Eigen::Vector3d first = transform.to_layer((first_voxel(tile).array() + 0.5).matrix());
@@ -125,12 +155,26 @@ void TilePuller::pull(const BrickMap& layer, const LatticeTransform& transform, 
     const int local = std::countr_zero(bits);
     const VoxelIndex offset = origin_of(brick_at({}, local));
     const FixedPoint origin = sum(tile_origin, combine(transform.inverse_steps(), offset.x, offset.y, offset.z));
-    if (brick_kernels().pull(cells_.data(), near_.data(), transform.pull_steps(), origin, out.brick(local))) {
+    if (brick_kernels().pull(cells_.data(), near_.data(), transform.pull_steps(), origin, out.keys[local].data())) {
       out.bricks |= std::uint64_t{1} << local;
     }
   }
   raise(transform, tile, wanted, out);
   clear();
+}
+
+void TilePuller::take_whole(const BrickMap& layer, BrickIndex shift, TileIndex tile, std::uint64_t wanted,
+                            LayerTile& out) {
+  const BrickIndex first = origin_of(tile);
+  const BrickIndex source{first.x - shift.x, first.y - shift.y, first.z - shift.z};
+  constexpr int kLast = kTileSide - 1;
+  visit_bricks(layer, source, {source.x + kLast, source.y + kLast, source.z + kLast},
+               [&](BrickIndex index, const Brick& brick) {
+                 const int local = local_of(BrickIndex{index.x - source.x, index.y - source.y, index.z - source.z});
+                 if ((wanted >> local & 1) == 0) return;
+                 out.whole[local] = &brick;
+                 out.bricks |= std::uint64_t{1} << local;
+               });
 }
 
 TilePuller::Region TilePuller::region_of(const LatticeTransform& transform, TileIndex tile, std::uint64_t wanted) {
@@ -147,32 +191,13 @@ std::uint64_t TilePuller::find_sources(const BrickMap& layer, const LatticeTrans
                                        std::uint64_t wanted, const Region& region) {
   sources_.clear();
   std::uint64_t reach = 0;
-  const auto inside = [&](BrickIndex b) {
-    return b.x >= region.low.x && b.x <= region.high.x && b.y >= region.low.y && b.y <= region.high.y &&
-           b.z >= region.low.z && b.z <= region.high.z;
-  };
-  const auto visit = [&](BrickIndex index, const Brick& brick) {
-    if (!inside(index)) return;
+  visit_bricks(layer, region.low, region.high, [&](BrickIndex index, const Brick& brick) {
     const std::uint64_t reached = reach_of(transform, tile, index) & wanted;
     if (reached == 0) return;
     reach |= reached;
     const BrickIndex position{index.x - region.base.x, index.y - region.base.y, index.z - region.base.z};
     sources_.push_back({&brick, index, position, {}});
-  };
-  const TileIndex first = tile_of(region.low);
-  const TileIndex last = tile_of(region.high);
-  for (std::int32_t z = first.z; z <= last.z; ++z) {
-    for (std::int32_t y = first.y; y <= last.y; ++y) {
-      for (std::int32_t x = first.x; x <= last.x; ++x) {
-        const Tile* source = layer.find(TileIndex{x, y, z});
-        if (source == nullptr) continue;
-        std::size_t next = 0;
-        for (std::uint64_t bits = source->present; bits != 0; bits &= bits - 1) {
-          visit(brick_at(TileIndex{x, y, z}, std::countr_zero(bits)), source->bricks[next++]);
-        }
-      }
-    }
-  }
+  });
   return reach;
 }
 
@@ -181,10 +206,7 @@ void TilePuller::fill() {
   high_plane_ = 0;
   for (Source& source : sources_) {
     const Brick& brick = *source.brick;
-    const LogOdds uniform = brick.is_uniform() ? brick.uniform_value() : kUnknown;
-    const LogOdds* values = brick.is_uniform() ? &uniform : brick.packed().data();
-    source.occupied = brick_kernels().expand(brick.known(), values, brick.is_uniform(),
-                                             &cells_[cell_at(source.position)], SourceBox::kRow, SourceBox::kPlane);
+    source.occupied = expand(brick, &cells_[cell_at(source.position)], SourceBox::kRow, SourceBox::kPlane);
     low_plane_ = std::min(low_plane_, source.position.z * kBrickSide);
     high_plane_ = std::max(high_plane_, (source.position.z + 1) * kBrickSide);
     for (int z = 0; z < kBrickSide; ++z) {
@@ -196,7 +218,7 @@ void TilePuller::fill() {
   }
 }
 
-void TilePuller::raise(const LatticeTransform& transform, TileIndex tile, std::uint64_t wanted, PulledTile& out) const {
+void TilePuller::raise(const LatticeTransform& transform, TileIndex tile, std::uint64_t wanted, LayerTile& out) const {
   // [position in a plane of the brick] a step from its first voxel.
   std::array<FixedPoint, 64> steps;
   for (int i = 0; i < 64; ++i) steps[i] = combine(transform.forward_steps(), i % 8, i / 8, 0);
@@ -213,10 +235,10 @@ void TilePuller::raise(const LatticeTransform& transform, TileIndex tile, std::u
         const int brick = brick_in_tile(p);
         if (brick < 0 || (wanted >> brick & 1) == 0) continue;
         if ((out.bricks >> brick & 1) == 0) {
-          std::fill_n(out.brick(brick), kBrickVoxels, Key{0});
+          out.keys[brick].fill(0);
           out.bricks |= std::uint64_t{1} << brick;
         }
-        Key& key = out.brick(brick)[voxel_in_brick(p)];
+        Key& key = out.keys[brick][voxel_in_brick(p)];
         key = std::max(key, keys[i % 8 + i / 8 * SourceBox::kRow]);
       }
     }

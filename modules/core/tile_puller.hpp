@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "core/brick_map.hpp"
@@ -7,13 +8,13 @@
 
 namespace concord {
 
-/// What a layer says about one tile of the map.
-struct PulledTile {
-  std::uint64_t bricks = 0;  ///< which bricks of `keys` mean anything; one of them may still be all unknown
-  std::vector<Key> keys = std::vector<Key>(kTileBricks * kBrickVoxels);  ///< brick by brick
-
-  [[nodiscard]] const Key* brick(int local) const { return keys.data() + local * kBrickVoxels; }
-  [[nodiscard]] Key* brick(int local) { return keys.data() + local * kBrickVoxels; }
+/// What a layer says about one tile of the map: bricks of the layer itself where the transform moves whole bricks to
+/// whole bricks, else bricks of keys.
+struct LayerTile {
+  std::uint64_t bricks = 0;  ///< which bricks below mean anything; one of keys may still be all unknown
+  bool is_whole = false;
+  std::array<const Brick*, kTileBricks> whole{};  ///< if `is_whole`
+  std::vector<KeyBrick> keys;                     ///< else; kTileBricks of them
 };
 
 /// Brings a layer into the map, tile by tile: each map voxel gets the value of the layer's voxel that holds its
@@ -27,7 +28,7 @@ class TilePuller {
 
   /// @param wanted the bricks of `tile` to bring in, bit local_of(brick).
   void pull(const BrickMap& layer, const LatticeTransform& transform, TileIndex tile, std::uint64_t wanted,
-            PulledTile& out);
+            LayerTile& out);
 
  private:
   /// Bricks of the layer that may matter to the tile; the source box begins at `base`.
@@ -41,11 +42,12 @@ class TilePuller {
     VoxelMask occupied;
   };
 
+  static void take_whole(const BrickMap& layer, BrickIndex shift, TileIndex tile, std::uint64_t wanted, LayerTile& out);
   [[nodiscard]] static Region region_of(const LatticeTransform& transform, TileIndex tile, std::uint64_t wanted);
   std::uint64_t find_sources(const BrickMap& layer, const LatticeTransform& transform, TileIndex tile,
                              std::uint64_t wanted, const Region& region);
   void fill();
-  void raise(const LatticeTransform& transform, TileIndex tile, std::uint64_t wanted, PulledTile& out) const;
+  void raise(const LatticeTransform& transform, TileIndex tile, std::uint64_t wanted, LayerTile& out) const;
   void clear();
 
   std::vector<Source> sources_;
