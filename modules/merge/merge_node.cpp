@@ -27,7 +27,7 @@ std::string agent_in(const std::string& channel, std::size_t prefix) {
 MergeNode::MergeNode(const NodeContext& context)
     : context_(context),
       store_(context.site.state / "merge.db", context.site.resolution),
-      catalogue_(context.site.state / "maps"),
+      maps_(context.site.state / "maps"),
       layers_(context.site.resolution, context.site.merge.policy),
       map_stream_(context.bus, context.counters, stream_config(context, "out/map"), layers_.map()),
       conflict_stream_(context.bus, context.counters, stream_config(context, "out/conflicts"), layers_.conflicts()),
@@ -185,13 +185,13 @@ void MergeNode::on_map_request(const MapRequest& request) {
 void MergeNode::save(const MapRequest& request) {
   refold_and_send();
   const auto bytes =
-      catalogue_.save(layers_.map(), context_.site.resolution, request.map, request.format, request.overwrite);
+      maps_.save(layers_.map(), context_.site.resolution, request.map, request.format, request.overwrite);
   if (!bytes) return deny(request.id, bytes.error());
   grant(request.id, map_stream_.revision(), *bytes, "saved " + request.map + "." + request.format);
 }
 
 void MergeNode::list(const MapRequest& request) {
-  const auto files = catalogue_.list();
+  const auto files = maps_.list();
   if (!files) return deny(request.id, files.error());
   context_.bus.publish("out/map_list", encode(MapList{request.id, *files}, context_.bus.now()));
   grant(request.id, 0, static_cast<std::int64_t>(files->size()), "listed");

@@ -10,7 +10,7 @@
 #include "bus/process.hpp"
 #include "bus/recent_answers.hpp"
 #include "merge/layered_map.hpp"
-#include "merge/map_catalogue.hpp"
+#include "merge/map_store.hpp"
 #include "merge/merge_store.hpp"
 
 namespace concord {
@@ -59,7 +59,7 @@ class MergeNode {
 
   NodeContext context_;
   MergeStore store_;
-  MapCatalogue catalogue_;
+  MapStore maps_;
   LayeredMap layers_;
   BrickSender map_stream_;
   BrickSender conflict_stream_;

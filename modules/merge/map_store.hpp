@@ -12,9 +12,9 @@
 namespace concord {
 
 /// The folder of saved maps: NAME.bt and NAME.ot, which OctoMap's tools read. Names come checked (is_name).
-class MapCatalogue {
+class MapStore {
  public:
-  explicit MapCatalogue(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  explicit MapStore(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
   /// Writes the whole file, synced, before it takes its name; an interrupted save leaves the old one.
   /// Refused: kExists unless `overwrite`, kIo, and what write_octomap_file refuses. Returns the bytes written.

@@ -1,4 +1,4 @@
-#include "merge/map_catalogue.hpp"
+#include "merge/map_store.hpp"
 
 #include <algorithm>
 
@@ -8,8 +8,8 @@
 
 namespace concord {
 
-Result<std::int64_t> MapCatalogue::save(const BrickMap& map, double resolution, const std::string& name,
-                                        const std::string& format, bool overwrite) const {
+Result<std::int64_t> MapStore::save(const BrickMap& map, double resolution, const std::string& name,
+                                    const std::string& format, bool overwrite) const {
   const std::filesystem::path file = folder_ / (name + "." + format);
   std::error_code error;
   if (!overwrite && std::filesystem::exists(file, error)) {
@@ -25,7 +25,7 @@ Result<std::int64_t> MapCatalogue::save(const BrickMap& map, double resolution, 
   return static_cast<std::int64_t>(bytes->size());
 }
 
-Result<std::vector<std::pair<std::string, std::int64_t>>> MapCatalogue::list() const {
+Result<std::vector<std::pair<std::string, std::int64_t>>> MapStore::list() const {
   std::vector<std::pair<std::string, std::int64_t>> files;
   std::error_code error;
   for (auto it = std::filesystem::directory_iterator(folder_, error);
