@@ -24,13 +24,15 @@ class Bus {
   /// seen without loss. Bounded, so that a stalled process drops (and asks again) instead of growing.
   static constexpr int kQueued = 16'384;
 
+  static constexpr std::size_t kMaxChannel = 63;  ///< characters, by LCM
+
   /// Calls `handler` with each message on a channel whose whole name matches the regular expression. `queued`: how many
   /// may wait while the process is busy, further ones are dropped; times the largest message it is the memory at risk.
   virtual void subscribe(const std::string& channel_regex, Handler handler, int queued) = 0;
   void subscribe(const std::string& channel_regex, Handler handler) {
     subscribe(channel_regex, std::move(handler), kQueued);
   }
-  /// Never blocks on receivers. @pre channel has at most 63 characters.
+  /// Never blocks on receivers. @pre channel has at most kMaxChannel characters.
   virtual void publish(const std::string& channel, std::span<const std::uint8_t> bytes) = 0;
   /// Calls `task` about every `period` microseconds, first after one period.
   virtual void every(std::int64_t period, Task task) = 0;

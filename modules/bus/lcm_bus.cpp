@@ -31,9 +31,22 @@ void warn_about_small_buffers(const std::string& url) {
   }
 }
 
+std::int64_t microseconds(std::chrono::nanoseconds time) {
+  return std::chrono::duration_cast<std::chrono::microseconds>(time).count();
+}
+
+/// LCM anchors a pattern without brackets, so that only the ends of an alternation would be.
+std::string anchored(const std::string& channel_regex) {
+  return channel_regex.find('|') == std::string::npos ? channel_regex : "(?:" + channel_regex + ")";
+}
+
 }  // namespace
 
-LcmBus::LcmBus(const std::string& url, Counters& counters) : lcm_(with_receive_buffer(url)), counters_(counters) {
+LcmBus::LcmBus(const std::string& url, Counters& counters)
+    : lcm_(with_receive_buffer(url)),
+      start_(microseconds(std::chrono::system_clock::now().time_since_epoch())),
+      steady_start_(std::chrono::steady_clock::now()),
+      counters_(counters) {
   if (!lcm_.good()) {
     throw ConfigError("LCM cannot join " + url + "; is there a multicast route? (ip route add 224.0.0.0/4 dev lo)");
   }
@@ -44,26 +57,27 @@ LcmBus::~LcmBus() = default;
 
 void LcmBus::subscribe(const std::string& channel_regex, Handler handler, int queued) {
   Subscription& subscription = subscriptions_.emplace_back(Subscription{this, std::move(handler)});
-  lcm::Subscription* raw = lcm_.subscribe(channel_regex, &Subscription::receive, &subscription);
+  lcm::Subscription* raw = lcm_.subscribe(anchored(channel_regex), &Subscription::receive, &subscription);
+  assert(queued > 0);  // LCM takes 0 for no limit
   raw->setQueueCapacity(queued);
 }
 
 void LcmBus::Subscription::receive(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
   const std::span bytes(static_cast<const std::uint8_t*>(buffer->data), buffer->data_size);
+  // Names go into counters, logs and JSON; anyone can send one.
+  const auto printable = [](char c) { return c > 0x20 && c < 0x7F; };
+  if (!std::all_of(channel.begin(), channel.end(), printable)) return bus->counters_.add("refused.channel_name");
   bus->guarded(channel, [&] { handler(channel, bytes); });
 }
 
 void LcmBus::publish(const std::string& channel, std::span<const std::uint8_t> bytes) {
-  assert(channel.size() <= LCM_MAX_CHANNEL_NAME_LENGTH);
+  assert(channel.size() <= kMaxChannel);
   if (lcm_.publish(channel, bytes.data(), static_cast<unsigned>(bytes.size())) != 0) counters_.add("publish_failed");
 }
 
 void LcmBus::every(std::int64_t period, Task task) { timers_.push_back({period, now() + period, std::move(task)}); }
 
-std::int64_t LcmBus::now() const {
-  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
+std::int64_t LcmBus::now() const { return start_ + microseconds(std::chrono::steady_clock::now() - steady_start_); }
 
 void LcmBus::spin_once(int timeout_ms) {
   std::int64_t wait = std::int64_t{timeout_ms} * 1000;
@@ -76,11 +90,12 @@ void LcmBus::spin_once(int timeout_ms) {
   run_due_timers();
 }
 
+/// In the order of `every`; each at most once, and after a stall the missed ones are not made up for.
 void LcmBus::run_due_timers() {
   for (Timer& timer : timers_) {
     const std::int64_t time = now();
     if (time < timer.due) continue;
-    timer.due = std::max(timer.due + timer.period, time);
+    timer.due += timer.period * ((time - timer.due) / timer.period + 1);
     guarded("timer", timer.task);
   }
 }
@@ -92,6 +107,9 @@ void LcmBus::guarded(const std::string& what, const Task& task) {
   } catch (const std::exception& e) {
     counters_.add("exceptions");
     spdlog::error("exception on {}: {}", what, e.what());
+  } catch (...) {
+    counters_.add("exceptions");
+    spdlog::error("exception on {}", what);
   }
 }
 

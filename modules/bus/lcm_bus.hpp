@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <list>
 #include <string>
 
@@ -22,6 +23,8 @@ class LcmBus final : public Bus {
   void subscribe(const std::string& channel_regex, Handler handler, int queued) override;
   void publish(const std::string& channel, std::span<const std::uint8_t> bytes) override;
   void every(std::int64_t period, Task task) override;
+  /// The system's clock at the start, then as much later as has passed: a clock that is set while we run (NTP, a robot
+  /// without a battery) neither stops timers nor makes time go back. @see Bus::now
   [[nodiscard]] std::int64_t now() const override;
 
   /// Waits up to `timeout_ms` (less when a timer is due) for messages, handles all that are there, runs due timers.
@@ -43,6 +46,8 @@ class LcmBus final : public Bus {
   void guarded(const std::string& what, const Task& task);
 
   lcm::LCM lcm_;
+  std::int64_t start_;
+  std::chrono::steady_clock::time_point steady_start_;
   Counters& counters_;
   std::list<Subscription> subscriptions_;
   std::list<Timer> timers_;

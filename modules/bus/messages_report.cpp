@@ -8,6 +8,8 @@
 #include <concord/path_t.hpp>
 #include <concord/status_t.hpp>
 
+#include <cmath>
+
 #include "bus/translate.hpp"
 
 namespace concord {
@@ -22,7 +24,10 @@ constexpr std::int64_t kMaxAgents = 1024;
 constexpr std::int64_t kMaxCounterName = 160;
 
 std::string clipped(std::string text) {
-  if (text.size() > static_cast<std::size_t>(wire::kMessageLength)) text.resize(wire::kMessageLength);
+  if (text.size() <= static_cast<std::size_t>(wire::kMessageLength)) return text;
+  std::size_t size = wire::kMessageLength;
+  while (size > 0 && (text[size] & 0xC0) == 0x80) --size;  // not within a character of UTF-8
+  text.resize(size);
   return text;
 }
 
@@ -71,12 +76,7 @@ Bytes encode(const Downsampled& value, std::int64_t utime) {
   out.resolution = value.resolution;
   out.part = value.part;
   out.parts = value.parts;
-  out.count = static_cast<std::int32_t>(value.points.size());
-  for (const Eigen::Vector3f& p : value.points) {
-    out.x.push_back(p.x());
-    out.y.push_back(p.y());
-    out.z.push_back(p.z());
-  }
+  wire::put_points(value.points, out);
   return wire::to_bytes(out);
 }
 
@@ -95,7 +95,8 @@ Decoded<Downsampled> decode<Downsampled>(std::span<const std::uint8_t> bytes) {
   if (!in) return bad(in.error());
   if (in->part < 0 || in->parts < 1 || in->part >= in->parts) return bad(Code::kMalformed, "part is not one of parts");
   Downsampled out{in->request_id, in->agent, in->frame_id, in->resolution, in->part, in->parts, {}};
-  for (std::size_t i = 0; i < in->x.size(); ++i) out.points.emplace_back(in->x[i], in->y[i], in->z[i]);
+  out.points = wire::points_of<Eigen::Vector3f>(*in);
+  if (!wire::all_finite(out.points)) return bad(Code::kNotFinite, "a point is not finite");
   return out;
 }
 
@@ -134,12 +135,7 @@ Bytes encode(const Path& value) {
   out.active = value.active;
   out.length = value.length;
   out.least_clearance = value.least_clearance;
-  out.count = static_cast<std::int32_t>(value.points.size());
-  for (const Eigen::Vector3d& p : value.points) {
-    out.x.push_back(p.x());
-    out.y.push_back(p.y());
-    out.z.push_back(p.z());
-  }
+  wire::put_points(value.points, out);
   return wire::to_bytes(out);
 }
 
@@ -168,7 +164,10 @@ Decoded<Path> decode<Path>(std::span<const std::uint8_t> bytes) {
   out.plan_number = in->plan_number;
   out.active = in->active != 0;
   out.utime = in->utime;
-  for (std::size_t i = 0; i < in->x.size(); ++i) out.points.emplace_back(in->x[i], in->y[i], in->z[i]);
+  out.points = wire::points_of<Eigen::Vector3d>(*in);
+  if (!wire::all_finite(out.points) || !std::isfinite(out.length) || !std::isfinite(out.least_clearance)) {
+    return bad(Code::kNotFinite, "a path has a number that is not finite");
+  }
   return out;
 }
 

@@ -20,6 +20,9 @@ constexpr std::int64_t kMaxEditBoxes = 65'536;
 constexpr std::int64_t kMaxEditVoxels = 1'000'000;
 
 BadMessage bad_id() { return {{Code::kBadRequest, "request id must be 1 to 80 printable characters"}, {}}; }
+BadMessage bad_author(const std::string& id) {
+  return {{Code::kBadRequest, "author must be at most 80 printable characters"}, id};
+}
 BadMessage bad_agent(const std::string& id) {
   return {{Code::kBadName, "agent must be 1 to 40 of A-Z a-z 0-9 . _ -, starting with a letter or digit"}, id};
 }
@@ -67,6 +70,7 @@ Decoded<TransformRequest> decode<TransformRequest>(std::span<const std::uint8_t>
   const auto in = wire::from_bytes<set_transform_t>(bytes, kLayout);
   if (!in) return bad(in.error());
   if (!wire::is_request_id(in->request_id)) return tl::unexpected(bad_id());
+  if (!wire::is_printable(in->author)) return tl::unexpected(bad_author(in->request_id));
   if (!is_name(in->agent)) return tl::unexpected(bad_agent(in->request_id));
   if (!in->frame_id.empty() && !is_name(in->frame_id)) {
     return bad(Code::kBadFrame, "frame_id must be empty or a name", in->request_id);
@@ -110,6 +114,7 @@ Decoded<EditRequest> decode_edit(std::span<const std::uint8_t> bytes, double res
   const auto in = wire::from_bytes<edit_t>(bytes, kLayout);
   if (!in) return bad(in.error());
   if (!wire::is_request_id(in->edit_id)) return tl::unexpected(bad_id());
+  if (!wire::is_printable(in->author)) return tl::unexpected(bad_author(in->edit_id));
   if (in->op != edit_t::ADD && in->op != edit_t::DELETE)
     return bad(Code::kBadRequest, "op must be ADD or DELETE", in->edit_id);
   if (!(std::abs(in->resolution - resolution) < 1e-9)) {

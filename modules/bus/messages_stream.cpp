@@ -166,12 +166,7 @@ Bytes encode(const CloudMessage& value) {
   out.has_sensor_pose = value.T_agent_sensor.has_value();
   out.T_agent_sensor = wire::to_wire(value.T_agent_sensor.value_or(Transform::Identity()));
   out.max_range = value.max_range;
-  out.count = static_cast<std::int32_t>(value.points.size());
-  for (const Eigen::Vector3f& p : value.points) {
-    out.x.push_back(p.x());
-    out.y.push_back(p.y());
-    out.z.push_back(p.z());
-  }
+  wire::put_points(value.points, out);
   return wire::to_bytes(out);
 }
 
@@ -197,8 +192,7 @@ Decoded<CloudMessage> decode<CloudMessage>(std::span<const std::uint8_t> bytes) 
     if (!pose) return bad(pose.error());
     out.T_agent_sensor = *pose;
   }
-  out.points.reserve(in->x.size());
-  for (std::size_t i = 0; i < in->x.size(); ++i) out.points.emplace_back(in->x[i], in->y[i], in->z[i]);
+  out.points = wire::points_of<Eigen::Vector3f>(*in);
   return out;
 }
 

@@ -41,33 +41,39 @@ void serve(const std::string& process, const Site& site,
   spdlog::info("stopping");
 }
 
+/// The site that `--site` names on the command line; all else there is left to the process's own parser.
+Site load_named_site(int argc, char** argv) {
+  CLI::App app;
+  app.set_help_flag();
+  app.allow_extras();
+  std::string file;
+  app.add_option("--site", file);
+  app.parse(argc, argv);
+  return file.empty() ? Site{} : load_site(file);
+}
+
 }  // namespace
 
 int run_process(const std::string& process, int argc, char** argv,
                 const std::function<std::shared_ptr<void>(const NodeContext&)>& make,
                 const std::function<void(CLI::App&, Site&)>& add_options) {
   spdlog::set_pattern("%H:%M:%S.%e " + process + " %^%l%$ %v");
-  CLI::App app("Concord's " + process + " process");
-  std::string site_file;
-  app.add_option("--site", site_file, "the site's YAML file; defaults hold where it is silent");
-  Site overrides;
-  if (add_options) add_options(app, overrides);
   try {
-    app.parse(argc, argv);
-    Site site = site_file.empty() ? Site{} : load_site(site_file);
-    if (add_options) {
-      // The options write into the site: parse again on top of the file's values.
-      CLI::App again;
-      again.add_option("--site", site_file);
-      add_options(again, site);
-      again.parse(argc, argv);
+    // The site file first: the options that follow write over it.
+    Site site = load_named_site(argc, argv);
+    CLI::App app("Concord's " + process + " process");
+    std::string site_file;
+    app.add_option("--site", site_file, "the site's YAML file; defaults hold where it is silent");
+    if (add_options) add_options(app, site);
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+      return app.exit(e) == 0 ? 0 : 2;
     }
     spdlog::info("effective configuration:\n{}", to_yaml(site));
     stop_on_signals();
     serve(process, site, make);
     return 0;
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
   } catch (const std::exception& e) {
     spdlog::error("{}", e.what());
     return 2;

@@ -1,7 +1,8 @@
 #include "bus/site.hpp"
 
-#include <cmath>
+#include <regex>
 #include <set>
+#include <sstream>
 
 #include <yaml-cpp/yaml.h>
 
@@ -12,6 +13,16 @@ namespace {
 
 [[noreturn]] void fail(const YAML::Node& node, const std::string& what) {
   throw ConfigError("line " + std::to_string(node.Mark().line + 1) + ": " + what);
+}
+
+/// The keys of a map; one that stands there twice is an error, or its second value would be lost without a word.
+std::set<std::string> keys_once(const YAML::Node& node, const std::string& name) {
+  std::set<std::string> keys;
+  for (const auto& entry : node) {
+    const auto key = entry.first.as<std::string>();
+    if (!keys.insert(key).second) fail(entry.first, name + "." + key + " is given twice");
+  }
+  return keys;
 }
 
 /// One section of the file: reads the keys it knows and refuses the rest when it goes out of scope by `done`.
@@ -31,13 +42,19 @@ class Section {
       fail(node, name_ + "." + key + " has the wrong type");
     }
   }
-  void read_number(const char* key, double& value, double low, double high) {
+  template <class Number>
+  void read(const char* key, Number& value, Number low, Number high) {
     read(key, value);
-    if (!(value >= low && value <= high)) out_of_range(key, low, high);
+    if (value >= low && value <= high) return;
+    std::ostringstream what;
+    what << name_ << "." << key << " must lie between " << low << " and " << high;
+    fail(take(key), what.str());
   }
-  void read_integer(const char* key, std::int64_t& value, std::int64_t low, std::int64_t high) {
+  /// A text that `ok` accepts.
+  template <class Ok>
+  void read(const char* key, std::string& value, Ok ok, const std::string& must) {
     read(key, value);
-    if (value < low || value > high) out_of_range(key, static_cast<double>(low), static_cast<double>(high));
+    if (!ok(value)) fail(take(key), name_ + "." + key + " must be " + must);
   }
   [[nodiscard]] YAML::Node take(const char* key) {
     known_.insert(key);
@@ -45,15 +62,17 @@ class Section {
   }
   void done() const {
     if (!node_ || !node_.IsMap()) return;
-    for (const auto& entry : node_) {
-      const auto key = entry.first.as<std::string>();
-      if (!known_.contains(key)) fail(entry.first, "unknown key " + name_ + "." + key);
+    for (const std::string& key : keys_once(node_, name_)) {
+      if (!known_.contains(key)) fail(key_node(key), "unknown key " + name_ + "." + key);
     }
   }
 
  private:
-  [[noreturn]] void out_of_range(const char* key, double low, double high) const {
-    throw ConfigError(name_ + "." + key + " must lie between " + std::to_string(low) + " and " + std::to_string(high));
+  [[nodiscard]] YAML::Node key_node(const std::string& key) const {
+    for (const auto& entry : node_) {
+      if (entry.first.as<std::string>() == key) return entry.first;
+    }
+    return node_;
   }
 
   YAML::Node node_;
@@ -63,19 +82,18 @@ class Section {
 
 AgentConfig read_agent(const YAML::Node& node, const std::string& name, AgentConfig agent) {
   Section section(node, name);
-  section.read("kind", agent.kind);
-  std::int64_t weight = agent.weight;
-  section.read_integer("weight", weight, 1, 1000);
-  agent.weight = static_cast<int>(weight);
-  section.read_number("radius", agent.radius, 0.0, 10.0);
+  section.read(
+      "kind", agent.kind, [](const std::string& kind) { return is_name(kind); }, "1 to 40 of A-Z a-z 0-9 . _ -");
+  section.read("weight", agent.weight, 1, 1000);
+  section.read("radius", agent.radius, 0.0, 10.0);
   section.done();
-  if (!is_name(agent.kind)) throw ConfigError(name + ".kind must be 1 to 40 of A-Z a-z 0-9 . _ -");
   return agent;
 }
 
 void read_agents(const YAML::Node& node, Site& site) {
   if (!node || node.IsNull()) return;
   if (!node.IsMap()) fail(node, "agents must hold one entry per agent id");
+  (void)keys_once(node, "agents");
   if (node["unlisted"]) site.unlisted = read_agent(node["unlisted"], "agents.unlisted", site.unlisted);
   for (const auto& entry : node) {
     const auto id = entry.first.as<std::string>();
@@ -87,22 +105,24 @@ void read_agents(const YAML::Node& node, Site& site) {
 
 Policy read_policy(Section& section, Policy policy) {
   std::string name = policy == Policy::kMean ? "mean" : "table";
-  section.read("policy", name);
-  if (name == "mean") return Policy::kMean;
-  if (name == "table") return Policy::kTable;
-  throw ConfigError("merge.policy must be mean or table");
+  section.read(
+      "policy", name, [](const std::string& p) { return p == "mean" || p == "table"; }, "mean or table");
+  return name == "mean" ? Policy::kMean : Policy::kTable;
 }
 
-/// LCM takes the time-to-live from the url; above 0 packets leave the host.
+/// Whether packets stay on this host. LCM takes the time-to-live from the url, and more than 0 where it has none.
+bool stays_on_host(const std::string& url) {
+  if (url.rfind("memq:", 0) == 0 || url.rfind("file:", 0) == 0) return true;
+  static const std::regex kTtlZero(R"((udpm|mpudpm)://[^?]*\?([^&]+&)*ttl=0(&.*)?)");
+  const std::size_t ttl = url.find("ttl");
+  return std::regex_match(url, kTtlZero) && url.find("ttl", ttl + 1) == std::string::npos;
+}
+
 void check_reach(const Site& site) {
-  const auto at = site.lcm_url.find("ttl=");
-  const bool stays =
-      site.lcm_url.rfind("udpm", 0) != 0 || (at != std::string::npos && std::atoi(site.lcm_url.c_str() + at + 4) == 0);
-  if (!stays && !site.beyond_host) {
-    throw ConfigError(
-        "lcm_url has a ttl above 0 or none: LCM has no authentication; "
-        "use ttl=0, or set beyond_host: true on a trusted network");
-  }
+  if (site.beyond_host || stays_on_host(site.lcm_url)) return;
+  throw ConfigError(
+      "lcm_url has a ttl above 0 or none: LCM has no authentication; "
+      "use ttl=0, or set beyond_host: true on a trusted network");
 }
 
 Site read_site(const YAML::Node& root, const std::filesystem::path& directory) {
@@ -113,16 +133,16 @@ Site read_site(const YAML::Node& root, const std::filesystem::path& directory) {
   std::string state = site.state;
   top.read("state", state);
   site.state = directory / state;  // an absolute path stays as it is
-  top.read_number("resolution", site.resolution, 0.005, 1.0);
+  top.read("resolution", site.resolution, 0.005, 1.0);
   read_agents(top.take("agents"), site);
 
   Section stream(top.take("stream"), "stream");
-  stream.read_number("bytes_per_second", site.stream.bytes_per_second, 1e4, 1e9);
+  stream.read("bytes_per_second", site.stream.bytes_per_second, 1e4, 1e9);
   stream.done();
 
   Section ingest(top.take("ingest"), "ingest");
-  ingest.read_integer("max_agents", site.ingest.max_agents, 1, 1000);
-  ingest.read_integer("max_known_voxels", site.ingest.max_known_voxels, 1, 4'000'000'000);
+  ingest.read("max_agents", site.ingest.max_agents, std::int64_t{1}, std::int64_t{1000});
+  ingest.read("max_known_voxels", site.ingest.max_known_voxels, std::int64_t{1}, std::int64_t{4'000'000'000});
   ingest.done();
 
   Section merge(top.take("merge"), "merge");
@@ -130,9 +150,9 @@ Site read_site(const YAML::Node& root, const std::filesystem::path& directory) {
   merge.done();
 
   Section planner(top.take("planner"), "planner");
-  planner.read_number("zmin", site.planner.zmin, -1000, 1000);
-  planner.read_number("zmax", site.planner.zmax, -1000, 1000);
-  planner.read_number("free_share", site.planner.free_share, 0.0, 1.0);
+  planner.read("zmin", site.planner.zmin, -1000.0, 1000.0);
+  planner.read("zmax", site.planner.zmax, -1000.0, 1000.0);
+  planner.read("free_share", site.planner.free_share, 0.0, 1.0);
   planner.done();
   if (site.planner.zmin >= site.planner.zmax) throw ConfigError("planner.zmin must be below planner.zmax");
 

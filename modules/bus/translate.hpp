@@ -2,6 +2,7 @@
 
 // Private to the translators (messages_*.cpp): what they share.
 
+#include <algorithm>
 #include <cstring>
 #include <string>
 
@@ -54,13 +55,15 @@ template <class Lcm>
   return bad(Error{code, std::move(message)}, std::move(id));
 }
 
-/// Request ids come back to their asker in answers and stand in logs: printable, not empty.
-[[nodiscard]] inline bool is_request_id(const std::string& id) {
-  if (id.empty()) return false;
-  for (const char c : id) {
-    if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) == 0x7F) return false;
-  }
-  return true;
+/// What people give and get back in answers, logs and lists.
+[[nodiscard]] inline bool is_printable(const std::string& text) {
+  return std::none_of(text.begin(), text.end(), [](char c) { return (c >= 0 && c < 0x20) || c == 0x7F; });
+}
+[[nodiscard]] inline bool is_request_id(const std::string& id) { return !id.empty() && is_printable(id); }
+
+template <class Points>
+[[nodiscard]] bool all_finite(const Points& points) {
+  return std::all_of(points.begin(), points.end(), [](const auto& p) { return p.allFinite(); });
 }
 
 [[nodiscard]] inline transform_t to_wire(const Transform& T) {
@@ -77,6 +80,24 @@ template <class Lcm>
 [[nodiscard]] inline Result<Transform> from_wire(const transform_t& in) {
   return make_transform({in.position[0], in.position[1], in.position[2]},
                         {in.quaternion[0], in.quaternion[1], in.quaternion[2], in.quaternion[3]});
+}
+
+/// Points travel as three arrays: LCM's C++ types would make a vector of each point.
+template <class Lcm, class Point>
+void put_points(const std::vector<Point>& points, Lcm& out) {
+  out.count = static_cast<std::int32_t>(points.size());
+  for (const Point& p : points) {
+    out.x.push_back(p.x());
+    out.y.push_back(p.y());
+    out.z.push_back(p.z());
+  }
+}
+template <class Point, class Lcm>
+[[nodiscard]] std::vector<Point> points_of(const Lcm& in) {
+  std::vector<Point> points;
+  points.reserve(in.x.size());
+  for (std::size_t i = 0; i < in.x.size(); ++i) points.emplace_back(in.x[i], in.y[i], in.z[i]);
+  return points;
 }
 
 }  // namespace concord::wire

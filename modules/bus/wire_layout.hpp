@@ -11,7 +11,7 @@ namespace concord {
 struct WireField {
   enum class Kind {
     kFixed,   ///< `bytes` bytes
-    kText,    ///< int32 length with terminating zero, at most `bytes` characters
+    kText,    ///< int32 length with terminating zero, at most `bytes` bytes of UTF-8
     kCount,   ///< int32, 0 to `bytes`; what the following arrays repeat
     kArray,   ///< the last count times `bytes` bytes
     kTexts,   ///< the last count times a text of at most `bytes` characters
