@@ -69,10 +69,8 @@ class StackSystemTest : public SystemTest {
 
 TEST_F(StackSystemTest, a_submap_becomes_the_map_over_a_lossy_network) {
   Host& robot = network().add("robot1");
-  for (const Host* host :
-       {&robot, static_cast<const Host*>(person_), &stack_->host("ingest"), &stack_->host("merge")}) {
-    host->lose_arriving(kLossPerMille);
-  }
+  const Host* const lossy[] = {&robot, person_, &stack_->host("ingest"), &stack_->host("merge")};
+  for (const Host* host : lossy) host->lose_arriving(kLossPerMille);
   stack_->start_all();
   listen_to_map(*person_);
   add_robot(robot, noisy_map(40, 1));
