@@ -52,15 +52,13 @@ Result<Transform> parse_transform(const std::string& text) {
   });
 }
 
-Result<VoxelBox> parse_box(const std::string& text, double resolution) {
-  const Result<std::vector<double>> numbers = parse_numbers(text, 6);
-  if (!numbers) return tl::unexpected(numbers.error());
-  const auto& n = *numbers;
+Result<VoxelBox> voxel_box(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double resolution) {
   std::array<Layers, 3> axis{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    axis[i] = layers_of(n[i], n[i + 3], resolution);
-    if (axis[i].first < -kMaxVoxel || axis[i].last >= kMaxVoxel) {
-      return refuse(Code::kOutOfBounds, "the box '" + text + "' lies beyond the map; give metres in the map frame");
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    Layers& layers = axis[static_cast<std::size_t>(i)];
+    layers = layers_of(a[i], b[i], resolution);
+    if (layers.first < -kMaxVoxel || layers.last >= kMaxVoxel) {
+      return refuse(Code::kOutOfBounds, "the box lies beyond the map; give metres in the map frame");
     }
   }
   const auto index = [&](double Layers::*side) {
@@ -68,6 +66,12 @@ Result<VoxelBox> parse_box(const std::string& text, double resolution) {
                       static_cast<std::int32_t>(axis[2].*side)};
   };
   return VoxelBox{index(&Layers::first), index(&Layers::last)};
+}
+
+Result<VoxelBox> parse_box(const std::string& text, double resolution) {
+  return parse_numbers(text, 6).and_then([&](const auto& n) {
+    return voxel_box({n[0], n[1], n[2]}, {n[3], n[4], n[5]}, resolution);
+  });
 }
 
 }  // namespace concord

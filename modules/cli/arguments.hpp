@@ -16,9 +16,11 @@ namespace concord {
 /// "x y z qx qy qz qw"; see make_transform for what is refused.
 [[nodiscard]] Result<Transform> parse_transform(const std::string& text);
 
-/// The voxels that share volume with the box "x0 y0 z0 x1 y1 z1" (corners in any order); a side without thickness
-/// takes the layer of voxels that begins there or holds it. So a pane drawn thinner than a voxel is still there.
-/// Refused: a box beyond the lattice (kOutOfBounds).
+/// The voxels that share volume with a box given by two opposite corners, metres; a side without thickness takes the
+/// layer of voxels that begins there or holds it. So a pane drawn thinner than a voxel is still there.
+/// Refused: a box beyond the lattice (kOutOfBounds). @pre both corners are finite.
+[[nodiscard]] Result<VoxelBox> voxel_box(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double resolution);
+/// The same for "x0 y0 z0 x1 y1 z1".
 [[nodiscard]] Result<VoxelBox> parse_box(const std::string& text, double resolution);
 
 }  // namespace concord

@@ -13,6 +13,9 @@
 
 namespace concord {
 
+/// What one edit may hold: lcmtypes/edit_t.lcm.
+inline constexpr std::int64_t kMaxEditVoxels = 1'000'000;
+
 /// Until then a request is sent again and again: datagrams get lost, and the stack does what it is asked once per id.
 inline constexpr std::int64_t kAskAgain = 300'000;
 

@@ -13,5 +13,6 @@ int main(int argc, char** argv) {
   concord::add_publish(program);
   concord::add_map(program);
   concord::add_up(program);
+  concord::add_demo(program);
   return program.run(argc, argv);
 }

@@ -258,7 +258,8 @@ double draw_panel(Page& page, const Overview& overview, const MapArea& area, boo
     for (const auto& [name, value] : overview.numbers) panel.number(name, value);
   }
   page.text(kPad + kMapWidth + kPad, area.frame.height - 22,
-            "seen from above, cut at z = " + format_number(overview.cut, 1) + " m; striped where submaps agree",
+            "seen from above, cut at z = " + format_number(overview.cut, 1) + " m" +
+                (overview.agents.size() > 1 ? "; striped where submaps agree" : ""),
             {12, false, kSoftInk});
   return panel.bottom();
 }

@@ -13,9 +13,6 @@
 namespace concord {
 namespace {
 
-/// An edit's voxels: lcmtypes/edit_t.lcm.
-constexpr std::int64_t kMaxEditVoxels = 1'000'000;
-
 /// What all requests by a person take.
 struct Options {
   std::string name, text, file, author, frame, format, agent;

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "agent/sim/score.hpp"
+#include "cli/overview.hpp"
+#include "core/requests.hpp"
+
+namespace concord {
+
+/// What a demo found out. What was not asked, or has no ground truth, is absent.
+struct DemoReport {
+  struct Agent {
+    AgentState state;
+    const BrickMap* map = nullptr;  ///< its submap, agent's frame
+    std::int64_t bytes_sent = 0;
+    std::optional<double> mapping_seconds;  ///< from its first moment to the end of its way
+  };
+
+  double resolution = 0.05;
+  double cut = 2.3;
+  std::vector<std::string> sources;  ///< map files; empty: simulated agents
+  const BrickMap* map = nullptr;     ///< as the stack ends with it
+  const BrickMap* conflicts = nullptr;
+  std::vector<Agent> agents;
+  std::vector<VoxelIndex> edit;
+  std::string author;
+  std::optional<MapScore> robot, merged, edited;  ///< one robot alone, all merged, and after the edit
+  std::optional<Path> path_before, path_after;
+  std::optional<bool> replanned;  ///< whether the active path was, by itself, when the edit crossed it
+  std::optional<Eigen::Vector2d> start, goal;
+  std::map<std::string, double> seconds;  ///< how long each part took
+  bool complete = true;                   ///< everything arrived
+
+  [[nodiscard]] std::int64_t bytes_sent() const;
+  /// One agent driving all ways, one after the other, against all at the same time. Absent without simulated agents.
+  [[nodiscard]] std::optional<double> mapping_alone() const;
+  [[nodiscard]] std::optional<double> mapping_together() const;
+};
+
+[[nodiscard]] nlohmann::json to_json(const DemoReport& report);
+[[nodiscard]] Overview to_overview(const DemoReport& report);
+/// The page that shows overview.png and the report's numbers.
+[[nodiscard]] std::string to_html(const DemoReport& report);
+
+/// Writes report.json, overview.png and index.html. Refused: kIo, kEmpty.
+[[nodiscard]] Result<void> write_report(const DemoReport& report, const std::filesystem::path& folder);
+
+}  // namespace concord

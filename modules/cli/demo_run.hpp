@@ -1,0 +1,73 @@
+#pragma once
+
+#include <list>
+#include <memory>
+
+#include "cli/demo_report.hpp"
+#include "cli/demo_scene.hpp"
+#include "cli/live.hpp"
+#include "cli/publish.hpp"
+#include "cli/stack.hpp"
+
+namespace concord {
+
+/// One demo from start to end: processes, agents, alignment, a path, an edit, the path again, a report.
+class DemoRun {
+ public:
+  /// @throws ConfigError
+  DemoRun(const DemoOptions& options, const Common& common);
+
+  [[nodiscard]] Outcome run();
+
+ private:
+  using Step = tl::expected<void, Failure>;
+
+  /// A stream per agent, the map and the conflicts, as anyone on the bus sees them.
+  struct Copies {
+    Copies(Live& live, const DemoScene& scene);
+    StreamCopy map, conflicts;
+    std::map<std::string, std::unique_ptr<StreamCopy>> agents;
+  };
+
+  Step prepare();
+  Step start();
+  Step send();
+  Step follow_mapping();
+  Step plan_before();
+  Step edit();
+  Step plan_after();
+  Step collect();
+  Step tell();
+
+  /// Fails when a person interrupts or a process cannot run.
+  [[nodiscard]] Step check(const std::string& what) const;
+  [[nodiscard]] Step wait_for(const std::string& what, double seconds, const std::function<bool()>& done);
+  [[nodiscard]] Step align(const AgentState& state);
+  [[nodiscard]] Step settle();
+  [[nodiscard]] tl::expected<Path, Failure> plan(bool keep_active);
+  [[nodiscard]] bool finished(const DemoAgent& agent) const;
+  [[nodiscard]] std::int64_t progress(const DemoAgent& agent) const;
+  [[nodiscard]] std::int64_t bytes_sent(const DemoAgent& agent) const;
+  [[nodiscard]] const AgentState* state_of(const std::string& id) const;
+  void score_map(const BrickMap& before_edit);
+  void show();
+  void say(const std::string& line) const;
+  [[nodiscard]] double now() const;
+  void took(const std::string& part, double since) { report_.seconds[part] = now() - since; }
+
+  DemoOptions options_;
+  Common common_;
+  Supervisor::Clock::time_point began_ = Supervisor::Clock::now();
+  DemoScene scene_;
+  Supervisor supervisor_;
+  std::unique_ptr<Live> live_;
+  std::unique_ptr<Copies> copies_;
+  std::map<std::string, std::unique_ptr<PublishedMap>> published_;
+  std::map<std::string, ProcessStatus> statuses_;
+  std::optional<AgentList> agents_;
+  std::string active_path_;  ///< the request that is kept up to date
+  BrickMap before_edit_;
+  DemoReport report_;
+};
+
+}  // namespace concord
