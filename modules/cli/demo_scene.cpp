@@ -36,12 +36,15 @@ Result<void> add_warehouse(const DemoOptions& options, DemoScene& scene) {
   add("headset1", "headset", AgentKind::kHeadset, 2);
   scene.start = scene.world->through_glass.from;
   scene.goal = scene.world->through_glass.to;
-  const auto glass = std::ranges::find(scene.world->features, "glass", &Feature::name);
-  if (glass == scene.world->features.end() || !glass->edit_box)
-    return refuse(Code::kNotFound, "this warehouse has no glass");
-  return voxel_box(glass->edit_box->min(), glass->edit_box->max(), scene.resolution)
-      .and_then([](const VoxelBox& box) { return expand(std::span(&box, 1), kMaxEditVoxels); })
-      .map([&](std::vector<VoxelIndex> voxels) { scene.edit = std::move(voxels); });
+  // What no sensor returns, but a person sees.
+  std::vector<VoxelBox> boxes;
+  for (const Feature& feature : scene.world->features) {
+    if (!feature.edit_box || (feature.name != "glass" && feature.name != "reflective plate")) continue;
+    const auto box = voxel_box(feature.edit_box->min(), feature.edit_box->max(), scene.resolution);
+    if (!box) return tl::unexpected(box.error());
+    boxes.push_back(*box);
+  }
+  return expand(boxes, kMaxEditVoxels).map([&](std::vector<VoxelIndex> voxels) { scene.edit = std::move(voxels); });
 }
 
 Result<void> add_wishes(const DemoOptions& options, DemoScene& scene) {

@@ -1,6 +1,13 @@
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
 #include "cli/command.hpp"
+#include "cli/replay.hpp"
 
 int main(int argc, char** argv) {
+  // Standard output is for what was asked for.
+  spdlog::set_default_logger(spdlog::stderr_color_mt("concord"));
+  spdlog::set_level(spdlog::level::warn);
   concord::Program program;
   concord::add_info(program);
   concord::add_merge(program);
@@ -14,5 +21,6 @@ int main(int argc, char** argv) {
   concord::add_map(program);
   concord::add_up(program);
   concord::add_demo(program);
+  concord::add_replay(program);
   return program.run(argc, argv);
 }

@@ -70,16 +70,22 @@ void draw_relief(Page& page, const MapArea& area, const Relief& relief, double c
   cairo_restore(cr);
 }
 
+/// The more of a column is contradicted the stronger: a wall that one submap lacks stands out, a floor that lies half a
+/// voxel deeper in one of them does not.
 void draw_conflicts(Page& page, const MapArea& area, const Relief& relief) {
+  constexpr int kFull = 10;
   const double side = std::max(area.scale, 2.0);
-  for (int row = 0; row < relief.height; ++row) {
-    for (int column = 0; column < relief.width; ++column) {
-      if (!relief.cells[static_cast<std::size_t>(row) * relief.width + column].conflict) continue;
-      const Eigen::Vector2d corner = area.voxel_corner(relief.min_x + column, relief.min_y + row + 1);
-      page.rectangle(corner.x(), corner.y(), side, side);
+  for (int strength = 1; strength <= kFull; ++strength) {
+    for (int row = 0; row < relief.height; ++row) {
+      for (int column = 0; column < relief.width; ++column) {
+        const int conflicts = relief.cells[static_cast<std::size_t>(row) * relief.width + column].conflicts;
+        if (std::min(conflicts, kFull) != strength) continue;
+        const Eigen::Vector2d corner = area.voxel_corner(relief.min_x + column, relief.min_y + row + 1);
+        page.rectangle(corner.x(), corner.y(), side, side);
+      }
     }
+    page.fill(kAmber, 0.8 * strength / kFull);
   }
-  page.fill(kAmber, 0.55);
 }
 
 void draw_edit(Page& page, const MapArea& area, const std::vector<VoxelIndex>& edit) {

@@ -107,12 +107,12 @@ std::uint32_t claims_of(const Overview& overview, const VoxelIndex& voxel, const
   const Eigen::Vector3d centre = centre_of(voxel, overview.resolution);
   for (std::size_t i = 0; i < T_agent_map.size(); ++i) {
     if (overview.agents[i].map == nullptr) continue;
-    // A turned lattice puts a surface up to one voxel beside the map's.
+    // Noise and a turned lattice put a surface up to one voxel beside the map's.
     bool found = false;
     for (int k = 0; k < 27 && !found; ++k) {
       const int step = (k + 13) % 27;  // the middle first
       const Eigen::Vector3d offset(step % 3 - 1, step / 3 % 3 - 1, step / 9 - 1);
-      const Eigen::Vector3d p = T_agent_map[i] * (centre + 0.5 * overview.resolution * offset);
+      const Eigen::Vector3d p = T_agent_map[i] * (centre + overview.resolution * offset);
       const LogOdds value = overview.agents[i].map->at(voxel_of(p, overview.resolution));
       found = is_known(value) && is_occupied(value);
     }
@@ -262,7 +262,7 @@ Relief look_down(const Overview& overview) {
       brick.for_each([&](int local, LogOdds value) {
         const VoxelIndex v = voxel_at(index, local);
         Relief::Cell* cell = relief.at(v.x, v.y);
-        if (cell != nullptr && is_occupied(value) && v.z < cut) cell->conflict = true;
+        if (cell != nullptr && is_occupied(value) && v.z < cut) ++cell->conflicts;
       });
     });
   }

@@ -26,7 +26,7 @@ struct Relief {
     float top = -std::numeric_limits<float>::infinity();  ///< of the highest surface under the cut, metres
     std::uint32_t claims = 0;                             ///< bit i: agent i holds that surface occupied
     bool seen = false;                                    ///< free or occupied anywhere under the cut
-    bool conflict = false;
+    std::uint16_t conflicts = 0;  ///< voxels of the column in which submaps contradict each other
 
     [[nodiscard]] bool solid() const { return top > -std::numeric_limits<float>::infinity(); }
   };

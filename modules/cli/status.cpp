@@ -18,7 +18,7 @@ Outcome status(const Common& common) {
   live.hear<ProcessStatus>("out/status/.*",
                            [&](const std::string&, ProcessStatus s) { heard[s.process] = std::move(s); });
   live.wait(kListen, [] { return false; });
-  if (heard.empty()) return live.no_answer("no process");
+  if (heard.empty()) return live.no_answer("the stack");
   nlohmann::json processes = nlohmann::json::object();
   std::string words;
   for (const auto& [name, process] : heard) {
@@ -39,9 +39,10 @@ Outcome agents(const Common& common) {
   std::string words;
   for (const AgentState& agent : list->agents) {
     array.push_back(to_json(agent));
-    words += agent.id + "  " + agent.kind + "  frame " + agent.frame_id + "  weight " + std::to_string(agent.weight) +
-             (agent.aligned ? "  aligned" : "  not aligned") + "  " + format_count(agent.known) + " known, " +
-             format_count(agent.occupied) + " occupied" + (agent.synced ? "" : "  (still arriving)") + "\n";
+    words += agent.id + "  " + agent.kind + (agent.frame_id.empty() ? "  no frame" : "  frame " + agent.frame_id) +
+             "  weight " + std::to_string(agent.weight) + (agent.aligned ? "  aligned" : "  not aligned") + "  " +
+             format_count(agent.known) + " known, " + format_count(agent.occupied) + " occupied" +
+             (agent.synced ? "" : "  (still arriving)") + "\n";
   }
   common.print({{"agents", array}}, words.empty() ? "no agents" : words);
   return Exit::kDone;

@@ -74,7 +74,7 @@ class OverviewTest : public testing::Test {
 };
 
 TEST_F(OverviewTest, ShowsEachThingInItsColourAtItsPlace) {
-  fill(conflicts, {20, 10, 0}, {23, 13, 0}, kOccupied);
+  fill(conflicts, {20, 10, 0}, {23, 13, 9}, kOccupied);
   overview.conflicts = &conflicts;
   for (std::int32_t y = 0; y < 30; ++y) {
     for (std::int32_t z = 0; z < 5; ++z) overview.edit.push_back({40, y, z});

@@ -1,0 +1,54 @@
+#include "cli/stream_gaps.hpp"
+
+namespace concord {
+namespace {
+
+constexpr std::int64_t kMostClouds = std::int64_t{1} << 60;  // sums do not overflow
+
+/// X of "X/bricks".
+std::string before_last_slash(const std::string& channel) { return channel.substr(0, channel.rfind('/')); }
+
+}  // namespace
+
+BrickReceiver& StreamGaps::receiver(const std::string& stream) {
+  std::unique_ptr<BrickReceiver>& slot = streams_[stream];
+  if (!slot) {
+    slot =
+        std::make_unique<BrickReceiver>(bus_, counters_, BrickReceiver::Config{stream, resolution_},
+                                        BrickReceiver::Events{[](const std::string&) {}, [](BrickIndex, Brick) {}, {}});
+  }
+  return *slot;
+}
+
+void StreamGaps::hear(std::int64_t utime, const std::string& channel, std::span<const std::uint8_t> bytes) {
+  bus_.advance_to(utime);
+  if (channel.ends_with("/bricks")) {
+    if (const auto packet = decode<BrickPacket>(bytes)) receiver(before_last_slash(channel)).on_packet(*packet);
+  } else if (channel.ends_with("/digest")) {
+    if (const auto digest = decode<BrickDigest>(bytes)) receiver(before_last_slash(channel)).on_digest(*digest);
+  } else if (channel.ends_with("/cloud")) {
+    const auto cloud = decode<CloudMessage>(bytes);
+    if (!cloud || cloud->sequence >= kMostClouds) return;
+    Clouds& clouds = clouds_[channel];
+    clouds.frame_id = cloud->frame_id;
+    clouds.heard[cloud->frame_id].add(cloud->sequence + 1, cloud->sequence + 1);
+  }
+}
+
+std::vector<StreamGaps::Gap> StreamGaps::gaps() const {
+  std::map<std::string, std::int64_t> missing;
+  for (const auto& [stream, receiver] : streams_) {
+    if (receiver->heard() && !receiver->synced()) missing[stream + "/bricks"] = receiver->missing();
+  }
+  for (const auto& [channel, clouds] : clouds_) {
+    const VersionSet& heard = clouds.heard.at(clouds.frame_id);
+    std::int64_t count = 0;
+    for (const auto& [first, last] : heard.missing(heard.highest())) count += last - first + 1;
+    if (count > 0) missing[channel] = count;
+  }
+  std::vector<Gap> gaps;
+  for (const auto& [channel, count] : missing) gaps.push_back({channel, count});
+  return gaps;
+}
+
+}  // namespace concord

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bus/brick_stream.hpp"
+#include "bus/lockstep_bus.hpp"
+
+namespace concord {
+
+/// What is missing in a recording. A logger cannot ask for what it missed: it shows as versions of a brick stream that
+/// were announced but never came, and as clouds whose number never came.
+class StreamGaps {
+ public:
+  struct Gap {
+    std::string channel;
+    std::int64_t missing = 0;  ///< versions or clouds; 0: how much there was is not known either
+  };
+
+  /// @pre `start` is not after the first message.
+  StreamGaps(double resolution, std::int64_t start) : resolution_(resolution), bus_(start) {}
+
+  void hear(std::int64_t utime, const std::string& channel, std::span<const std::uint8_t> bytes);
+
+  /// Sorted by channel. What was made void (a frame that was left) counts no more.
+  [[nodiscard]] std::vector<Gap> gaps() const;
+
+ private:
+  struct Clouds {
+    std::string frame_id;
+    std::map<std::string, VersionSet> heard;  ///< by frame_id: sequence numbers, plus 1
+  };
+
+  BrickReceiver& receiver(const std::string& stream);
+
+  double resolution_;
+  LockstepBus bus_;  ///< its receivers ask for repairs, and nobody hears them
+  Counters counters_;
+  std::map<std::string, std::unique_ptr<BrickReceiver>> streams_;
+  std::map<std::string, Clouds> clouds_;
+};
+
+}  // namespace concord

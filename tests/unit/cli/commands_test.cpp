@@ -1,0 +1,198 @@
+#include <unistd.h>
+
+#include <fstream>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.hpp"
+#include "cli/map_file.hpp"
+
+namespace concord {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A box of voxels, both corners included.
+void fill(BrickMap& map, VoxelIndex low, VoxelIndex high, LogOdds value) {
+  std::map<BrickIndex, DenseBrick> dense;
+  for (VoxelIndex v = low; v.z <= high.z; ++v.z) {
+    for (v.y = low.y; v.y <= high.y; ++v.y) {
+      for (v.x = low.x; v.x <= high.x; ++v.x) {
+        const auto [it, fresh] = dense.try_emplace(brick_of(v));
+        const Brick* known = map.find(it->first);
+        if (fresh) known != nullptr ? known->to_dense(it->second) : it->second.fill(kUnknown);
+        it->second[local_of(v)] = value;
+      }
+    }
+  }
+  for (const auto& [index, values] : dense) map.set(index, Brick::from_dense(values));
+}
+
+/// Runs `concord` in this process, on files of a folder of its own.
+class Commands : public testing::Test {
+ protected:
+  struct Ran {
+    int exit;
+    std::string out;
+    std::string err;
+    [[nodiscard]] nlohmann::json json() const { return nlohmann::json::parse(out); }
+  };
+
+  void SetUp() override {
+    fs::create_directories(folder);
+    // A room of 4 x 2 m at 0.1 m with a wall across it that leaves a door at y < 0.6.
+    BrickMap room;
+    fill(room, {0, 0, 0}, {39, 19, 9}, kFree);
+    fill(room, {20, 6, 0}, {20, 19, 9}, kOccupied);
+    ASSERT_TRUE(save_map(folder / "room.bt", room, 0.1));
+    BrickMap pillar;
+    fill(pillar, {0, 0, 0}, {1, 1, 9}, kOccupied);
+    fill(pillar, {2, 0, 0}, {3, 1, 9}, kFree);
+    ASSERT_TRUE(save_map(folder / "pillar.bt", pillar, 0.1));
+  }
+  void TearDown() override { fs::remove_all(folder); }
+
+  [[nodiscard]] std::string file(const std::string& name) const { return folder / name; }
+
+  Ran run(const std::vector<std::string>& arguments) {
+    Program program;
+    for (const auto add : {add_info, add_merge, add_project, add_plan, add_requests, add_up}) add(program);
+    std::vector<const char*> argv = {"concord"};
+    for (const std::string& argument : arguments) argv.push_back(argument.c_str());
+    testing::internal::CaptureStdout();
+    testing::internal::CaptureStderr();
+    const int exit = program.run(static_cast<int>(argv.size()), argv.data());
+    return {exit, testing::internal::GetCapturedStdout(), testing::internal::GetCapturedStderr()};
+  }
+
+  fs::path folder = fs::path(testing::TempDir()) / ("commands" + std::to_string(getpid()));
+};
+
+TEST_F(Commands, InfoCountsWhatAFileHolds) {
+  const Ran ran = run({"info", file("room.bt"), "--json"});
+  EXPECT_EQ(ran.exit, 0);
+  const nlohmann::json json = ran.json();
+  EXPECT_EQ(json["known"], 40 * 20 * 10);
+  EXPECT_EQ(json["occupied"], 14 * 10);
+  EXPECT_EQ(json["free"], 40 * 20 * 10 - 14 * 10);
+  EXPECT_NEAR(json["bounds"]["max"][0].get<double>(), 4.0, 1e-9);
+}
+
+TEST_F(Commands, AFileThatCannotBeReadIsToldInTheFormAskedFor) {
+  const Ran words = run({"info", file("none.bt")});
+  EXPECT_EQ(words.exit, 2);
+  EXPECT_EQ(words.out, "");
+  EXPECT_NE(words.err.find("does not exist"), std::string::npos);
+  std::ofstream(file("bad.bt")) << "no map";
+  const Ran json = run({"info", file("bad.bt"), "--json"});
+  EXPECT_EQ(json.exit, 2);
+  EXPECT_EQ(json.json()["error"]["code"], "MALFORMED");
+}
+
+TEST_F(Commands, WrongUsageIsTwoAndHelpIsNone) {
+  EXPECT_EQ(run({}).exit, 2);
+  EXPECT_EQ(run({"nonsense"}).exit, 2);
+  EXPECT_EQ(run({"merge", file("room.bt")}).exit, 2);
+  EXPECT_EQ(run({"merge", file("room.bt"), file("pillar.bt"), "--policy", "loudest"}).exit, 2);
+  EXPECT_EQ(run({"info", "--help"}).exit, 0);
+}
+
+TEST_F(Commands, MergePutsTheSecondMapWhereItIsTold) {
+  const Ran ran = run({"merge", file("room.bt"), file("pillar.bt"), "--transform", "1 1 0 0 0 0 1", "--policy", "table",
+                       "--out", file("merged.bt"), "--json"});
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  EXPECT_EQ(ran.json()["occupied"], 14 * 10 + 40);
+  EXPECT_EQ(ran.json()["conflicting"], 40);
+  const auto merged = load_map(file("merged.bt"));
+  ASSERT_TRUE(merged);
+  EXPECT_TRUE(is_occupied(merged->map.at({10, 10, 0})));
+  EXPECT_TRUE(is_free(merged->map.at({12, 10, 0})));
+}
+
+TEST_F(Commands, MergeWeighsByWeight) {
+  // Mean of -2.0 and +3.5: occupied with equal weights, free when the map that says free weighs twice as much.
+  const auto occupied = [&](const std::vector<std::string>& extra) {
+    std::vector<std::string> arguments = {"merge", file("room.bt"), file("pillar.bt"), "--json"};
+    arguments.insert(arguments.end(), extra.begin(), extra.end());
+    return run(arguments).json()["occupied"].get<int>();
+  };
+  EXPECT_EQ(occupied({}), 14 * 10 + 40);
+  EXPECT_EQ(occupied({"--weights", "2", "1"}), 14 * 10);
+}
+
+TEST_F(Commands, MergeRefusesATransformThatIsNone) {
+  for (const char* transform : {"1 2 3", "0 0 0 0 0 0 0", "nan 0 0 0 0 0 1"}) {
+    EXPECT_EQ(run({"merge", file("room.bt"), file("pillar.bt"), "--transform", transform}).exit, 2) << transform;
+  }
+}
+
+TEST_F(Commands, MergeLeavesNoFileWithAnUnknownExtension) {
+  EXPECT_EQ(run({"merge", file("room.bt"), file("pillar.bt"), "--out", file("m.png")}).exit, 2);
+  EXPECT_FALSE(fs::exists(file("m.png")));
+}
+
+TEST_F(Commands, ProjectWritesWhatMapServerReads) {
+  const Ran ran = run({"project", file("room.bt"), "--band", "0", "1", "--out", file("grid.pgm"), "--json"});
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  EXPECT_EQ(ran.json()["occupied"], 14);
+  EXPECT_EQ(ran.json()["free"], 40 * 20 - 14);
+  EXPECT_EQ(ran.json()["unknown"], 0);
+  std::ifstream pgm(file("grid.pgm"), std::ios::binary);
+  std::string magic;
+  int width = 0, height = 0, most = 0;
+  pgm >> magic >> width >> height >> most;
+  pgm.get();
+  std::vector<char> cells(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  pgm.read(cells.data(), static_cast<std::streamsize>(cells.size()));
+  ASSERT_TRUE(pgm);
+  EXPECT_EQ(magic, "P5");
+  EXPECT_EQ(width, 40);
+  EXPECT_EQ(height, 20);
+  EXPECT_EQ(static_cast<unsigned char>(cells[20]), 0) << "the top row is the far end of the wall";
+  EXPECT_EQ(static_cast<unsigned char>(cells[19 * 40 + 20]), 254) << "the bottom row is the door";
+  std::ifstream yaml(file("grid.yaml"));
+  const std::string text((std::istreambuf_iterator<char>(yaml)), {});
+  EXPECT_NE(text.find("resolution: 0.1\norigin: [0, 0, 0]"), std::string::npos) << text;
+}
+
+TEST_F(Commands, ProjectRefusesABandWithNothingInIt) {
+  EXPECT_EQ(run({"project", file("room.bt"), "--band", "-9", "-8"}).exit, 2);
+  EXPECT_EQ(run({"project", file("room.bt"), "--band", "1", "0"}).exit, 2);
+}
+
+TEST_F(Commands, PlanGoesThroughTheDoorOrSaysWhyNot) {
+  const std::vector<std::string> base = {"plan",   "--map", file("room.bt"), "--band", "0",     "1",
+                                         "--from", "1 1.5", "--to",          "3 1.5",  "--json"};
+  auto with = [&](const std::vector<std::string>& extra) {
+    std::vector<std::string> all = base;
+    all.insert(all.end(), extra.begin(), extra.end());
+    return run(all);
+  };
+  const Ran narrow = with({"--radius", "0.2", "--out", file("path.png")});
+  EXPECT_EQ(narrow.exit, 0) << narrow.err;
+  EXPECT_EQ(narrow.json()["status"], "OK");
+  EXPECT_GT(narrow.json()["length"].get<double>(), 2.5);
+  EXPECT_GT(fs::file_size(file("path.png")), 1000U);
+  const Ran wide = with({"--radius", "0.4"});
+  EXPECT_EQ(wide.exit, 1);
+  EXPECT_EQ(wide.json()["status"], "NO_VALID_PATH");
+  EXPECT_TRUE(wide.json()["length"].is_null());
+}
+
+TEST_F(Commands, PlanNeedsAMapOrARobot) {
+  EXPECT_EQ(run({"plan", "--to", "1 1"}).exit, 2);
+  EXPECT_EQ(run({"plan", "--to", "1 1", "--map", file("room.bt")}).exit, 2);
+  EXPECT_EQ(run({"plan", "--to", "1", "--robot", "robot1"}).exit, 2);
+  EXPECT_EQ(run({"plan", "--to", "1 1", "--robot", "../robot"}).exit, 2);
+}
+
+TEST_F(Commands, ASiteFileThatCannotBeUsedIsNamed) {
+  std::ofstream(file("site.yaml")) << "nonsense: 1\n";
+  const Ran ran = run({"up", "--site", file("site.yaml")});
+  EXPECT_EQ(ran.exit, 2);
+  EXPECT_NE(ran.err.find("nonsense"), std::string::npos) << ran.err;
+}
+
+}  // namespace
+}  // namespace concord
