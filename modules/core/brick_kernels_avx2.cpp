@@ -2,6 +2,7 @@
 
 #if defined(__x86_64__)
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 
@@ -69,7 +70,7 @@ CONCORD_AVX2 VoxelMask expand(const VoxelMask& known, const LogOdds* values, boo
   const int size = count(known);
   const int tail_start = size > 8 ? size - 8 : 0;
   LogOdds tail[16] = {};
-  std::memcpy(tail, values + tail_start, (size - tail_start) * sizeof(LogOdds));
+  std::copy_n(values + tail_start, size - tail_start, tail);
   const __m128i bias = _mm_set1_epi16(static_cast<short>(0x8000));
   VoxelMask occupied;
   int rank = 0;

@@ -1,6 +1,7 @@
 #include "core/compose.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <thread>
 
 #include "core/tile_puller.hpp"
@@ -18,7 +19,10 @@ struct Plan {
   Plan(std::span<const Layer> all, const PinMap& pinned, Policy chosen, double resolution)
       : layers(all), pins(pinned), policy(chosen) {
     transforms.reserve(layers.size());
-    for (const Layer& layer : layers) transforms.emplace_back(layer.T_map_layer, resolution);
+    for (const Layer& layer : layers) {
+      assert(layer.map != nullptr && layer.weight >= 1 && layer.weight <= 1000);
+      transforms.emplace_back(layer.T_map_layer, resolution);
+    }
   }
 };
 
