@@ -1,12 +1,20 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include "core/byte_stream.hpp"
 
 namespace concord {
+
+/// Whether a channel is one that our processes use: printable, without spaces. Names go into counters, logs and JSON,
+/// and anyone can send one; messages on others are dropped.
+[[nodiscard]] inline bool is_channel(std::string_view name) {
+  return std::all_of(name.begin(), name.end(), [](char c) { return c > 0x20 && c < 0x7F; });
+}
 
 /// What a node sees of the network: named channels, a clock and timers. Everything runs in one thread.
 /// `LcmBus` is the real one; `LockstepBus` plays a log through nodes in one process on log time.

@@ -64,9 +64,7 @@ void LcmBus::subscribe(const std::string& channel_regex, Handler handler, int qu
 
 void LcmBus::Subscription::receive(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
   const std::span bytes(static_cast<const std::uint8_t*>(buffer->data), buffer->data_size);
-  // Names go into counters, logs and JSON; anyone can send one.
-  const auto printable = [](char c) { return c > 0x20 && c < 0x7F; };
-  if (!std::all_of(channel.begin(), channel.end(), printable)) return bus->counters_.add("refused.channel_name");
+  if (!is_channel(channel)) return bus->counters_.add("refused.channel_name");
   bus->guarded(channel, [&] { handler(channel, bytes); });
 }
 

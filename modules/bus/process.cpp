@@ -23,19 +23,14 @@ void stop_on_signals() {
   std::signal(SIGPIPE, SIG_IGN);
 }
 
-void publish_status_each_second(Bus& bus, const Counters& counters, const std::string& process, std::int64_t boot_id) {
-  bus.every(1'000'000, [&bus, &counters, process, boot_id] {
-    bus.publish("out/status/" + process, encode(ProcessStatus{bus.now(), process, boot_id, counters.all()}));
-  });
-}
-
 void serve(const std::string& process, const Site& site,
            const std::function<std::shared_ptr<void>(const NodeContext&)>& make) {
   Counters counters;
   LcmBus bus(site.lcm_url, counters);
   const std::int64_t boot_id = bus.now();
-  publish_status_each_second(bus, counters, process, boot_id);
-  const std::shared_ptr<void> node = make({bus, counters, site, process, boot_id});
+  const NodeContext context{bus, counters, site, process, boot_id};
+  publish_status_each_second(context);
+  const std::shared_ptr<void> node = make(context);
   spdlog::info("serving on {}", site.lcm_url);
   while (!stop_requested) bus.spin_once(10);
   spdlog::info("stopping");
@@ -53,6 +48,13 @@ Site load_named_site(int argc, char** argv) {
 }
 
 }  // namespace
+
+void publish_status_each_second(const NodeContext& context) {
+  context.bus.every(1'000'000, [context] {
+    const ProcessStatus status{context.bus.now(), context.process, context.boot_id, context.counters.all()};
+    context.bus.publish("out/status/" + context.process, encode(status));
+  });
+}
 
 int run_process(const std::string& process, int argc, char** argv,
                 const std::function<std::shared_ptr<void>(const NodeContext&)>& make,

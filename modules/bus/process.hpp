@@ -23,6 +23,9 @@ struct NodeContext {
   std::int64_t boot_id;  ///< this start, microseconds since 1970
 };
 
+/// A status message each second on out/status/<process>: that it lives, and what it has counted.
+void publish_status_each_second(const NodeContext& context);
+
 /// Runs a node as an LCM process: `--site FILE`, signals, a status message each second on out/status/<process>,
 /// until SIGINT or SIGTERM. `make` builds the node and returns it type-erased; it lives until the end.
 /// `add_options` may add options of the process's own that write into the site, over the file's values.

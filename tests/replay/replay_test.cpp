@@ -1,0 +1,170 @@
+#include "cli/replay.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/temporary_folder.hpp"
+#include "session.hpp"
+
+namespace concord::test {
+namespace {
+
+class ReplayTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() { spdlog::set_default_logger(spdlog::stderr_color_mt("replay_test")); }
+
+  static const std::vector<LogEvent>& session() {
+    static const std::vector<LogEvent> kSession = record_session();
+    return kSession;
+  }
+  std::filesystem::path write(const std::vector<LogEvent>& events) {
+    const auto file = folder_.path() / ("log" + std::to_string(++logs_));
+    write_log(file, events);
+    return file;
+  }
+  Replayed replay(const std::vector<LogEvent>& events) {
+    auto replayed = replay_lockstep(write(events), Site{});
+    EXPECT_TRUE(replayed) << (replayed ? "" : replayed.error().message);
+    return replayed ? *replayed : Replayed{};
+  }
+  /// As a script calls it: exit code and what was printed.
+  std::pair<int, nlohmann::json> run(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"concord", "replay", "--json"});
+    std::vector<const char*> argv;
+    for (const std::string& argument : arguments) argv.push_back(argument.c_str());
+    Program program;
+    add_replay(program);
+    testing::internal::CaptureStdout();
+    const int exit = program.run(static_cast<int>(argv.size()), argv.data());
+    return {exit, nlohmann::json::parse(testing::internal::GetCapturedStdout())};
+  }
+
+  TemporaryFolder folder_{"replay-test"};
+  int logs_ = 0;
+};
+
+/// The session without what `drop` says.
+template <class Drop>
+std::vector<LogEvent> without(std::vector<LogEvent> events, Drop drop) {
+  std::erase_if(events, drop);
+  return events;
+}
+
+TEST_F(ReplayTest, the_same_log_gives_the_same_results_every_time) {
+  const Replayed first = replay(session());
+  const Replayed second = replay(session());
+  EXPECT_EQ(first.digests, second.digests);
+  EXPECT_TRUE(first.gaps.empty());
+  EXPECT_GT(first.map_bricks, 500U);
+  EXPECT_EQ(first.messages, static_cast<std::int64_t>(session().size()));
+  for (const char* result : {"map", "conflicts", "grid"}) EXPECT_NE(first.digests.at(result), 0U) << result;
+}
+
+TEST_F(ReplayTest, each_kind_of_input_counts) {
+  const Replayed whole = replay(session());
+  for (const char* channel : {"in/edit", "in/transform", "in/scanner/cloud"}) {
+    const Replayed less = replay(without(session(), [&](const LogEvent& e) { return e.channel == channel; }));
+    EXPECT_NE(less.digests.at("map"), whole.digests.at("map")) << channel;
+  }
+  const Replayed less = replay(without(session(), [](const LogEvent& e) { return e.channel == "in/path_request"; }));
+  EXPECT_EQ(less.digests.at("map"), whole.digests.at("map"));
+  EXPECT_NE(less.digests.at("paths"), whole.digests.at("paths"));
+}
+
+TEST_F(ReplayTest, the_order_in_which_agents_were_heard_does_not_count) {
+  const std::uint64_t map = replay(session()).digests.at("map");
+  for (const std::string first : {"in/scanner/", "in/robot2/", "in/robot1/"}) {
+    // The same times, but of the first two seconds all of one agent's messages come first.
+    std::vector<LogEvent> events = session();
+    const auto people =
+        std::find_if(events.begin(), events.end(), [](const LogEvent& e) { return e.channel == "in/transform"; });
+    std::vector<std::int64_t> times;
+    for (auto it = events.begin(); it != people; ++it) times.push_back(it->utime);
+    std::stable_partition(events.begin(), people, [&](const LogEvent& e) { return e.channel.starts_with(first); });
+    for (std::size_t i = 0; i < times.size(); ++i) events[i].utime = times[i];
+    EXPECT_EQ(replay(events).digests.at("map"), map) << first;
+  }
+}
+
+TEST_F(ReplayTest, repeated_and_repaired_packets_change_nothing) {
+  std::vector<LogEvent> events;
+  for (const LogEvent& event : session()) {
+    events.push_back(event);
+    if (event.channel.ends_with("/bricks") || event.channel == "in/edit") events.push_back(event);
+  }
+  EXPECT_EQ(replay(events).digests.at("map"), replay(session()).digests.at("map"));
+}
+
+TEST_F(ReplayTest, what_the_stack_said_then_is_not_played) {
+  std::vector<LogEvent> events = session();
+  events.insert(events.begin() + 10, {events[10].utime, "out/agent/robot1/bricks", {1, 2, 3}});
+  EXPECT_EQ(replay(events).digests, replay(session()).digests);
+}
+
+TEST_F(ReplayTest, packets_that_the_logger_missed_are_named) {
+  int packets = 0;
+  const auto log =
+      write(without(session(), [&](const LogEvent& e) { return e.channel == "in/robot2/bricks" && ++packets == 3; }));
+  const auto [exit, result] = run({log});
+  EXPECT_EQ(exit, 4);
+  ASSERT_EQ(result["gaps"].size(), 1U);
+  EXPECT_EQ(result["gaps"][0]["channel"], "in/robot2/bricks");
+  EXPECT_GT(result["gaps"][0]["missing"], 0);
+}
+
+TEST_F(ReplayTest, clouds_that_the_logger_missed_are_named) {
+  int clouds = 0;
+  const auto log =
+      write(without(session(), [&](const LogEvent& e) { return e.channel == "in/scanner/cloud" && ++clouds == 2; }));
+  const auto [exit, result] = run({log});
+  EXPECT_EQ(exit, 4);
+  ASSERT_EQ(result["gaps"].size(), 1U);
+  EXPECT_EQ(result["gaps"][0]["channel"], "in/scanner/cloud");
+  EXPECT_EQ(result["gaps"][0]["missing"], 1);
+}
+
+TEST_F(ReplayTest, expectations_are_compared) {
+  const auto log = write(session());
+  const auto [exit, result] = run({log});
+  ASSERT_EQ(exit, 0);
+  EXPECT_EQ(result["digest"], result["map_digest"]);
+  const auto expect = folder_.path() / "expect.json";
+  std::ofstream(expect) << result;
+  EXPECT_EQ(run({log, "--expect", expect}).first, 0);
+
+  nlohmann::json other = result;
+  other["results"]["grid"] = "0";
+  std::ofstream(expect) << other;
+  const auto [differs, differences] = run({log, "--expect", expect});
+  EXPECT_EQ(differs, 1);
+  EXPECT_EQ(differences["differences"].size(), 1U);
+
+  std::ofstream(expect) << "{}";
+  EXPECT_EQ(run({log, "--expect", expect}).first, 2);
+  std::ofstream(expect) << "nonsense";
+  EXPECT_EQ(run({log, "--expect", expect}).first, 2);
+}
+
+TEST_F(ReplayTest, what_is_no_log_is_refused) {
+  const auto file = folder_.path() / "nonsense";
+  EXPECT_EQ(run({file}).first, 2);
+  std::ofstream(file) << "this is no log, but it is longer than a header";
+  EXPECT_EQ(run({file}).first, 2);
+  std::vector<LogEvent> jump = {session()[0], session()[1]};
+  jump[1].utime += std::int64_t{48} * 3600 * 1'000'000;
+  EXPECT_EQ(run({write(jump)}).first, 2);
+}
+
+TEST_F(ReplayTest, an_empty_log_gives_an_empty_map) {
+  const Replayed replayed = replay({});
+  EXPECT_EQ(replayed.map_bricks, 0U);
+  EXPECT_EQ(replayed.digests.at("map"), 0U);
+}
+
+}  // namespace
+}  // namespace concord::test
