@@ -82,13 +82,11 @@ DemoRun::Step DemoRun::prepare() {
 DemoRun::Step DemoRun::start() {
   const double since = now();
   live_ = std::make_unique<Live>(common_);
-  live_->hear<ProcessStatus>("out/status/.*",
-                             [this](const std::string&, ProcessStatus s) { statuses_[s.process] = std::move(s); });
-  live_->hear<AgentList>("out/agents", [this](const std::string&, AgentList list) { agents_ = std::move(list); });
-  live_->wait(kListen, [this] { return !statuses_.empty(); });
-  if (!statuses_.empty()) {
+  watch_ = std::make_unique<DemoWatch>(*live_);
+  live_->wait(kListen, [this] { return watch_->anyone().has_value(); });
+  if (const auto other = watch_->anyone()) {
     return fail(Exit::kRefused, "EXISTS",
-                statuses_.begin()->first + " runs already on " + live_->site().lcm_url + "; end that stack first");
+                *other + " runs already on " + live_->site().lcm_url + "; end that stack first");
   }
   copies_ = std::make_unique<Copies>(*live_, scene_);
   live_->bus().every(100'000, [this] { supervisor_.wait(std::chrono::milliseconds(0)); });
@@ -98,7 +96,7 @@ DemoRun::Step DemoRun::start() {
       start_stack(supervisor_, {common_.site_file, live_->site().lcm_url, log, options_.out / "output"});
   if (!started) return fail(started.error());
   const auto up = wait_for("the processes to start", kStart, [&] {
-    return nonempty(log) && std::ranges::all_of(kProcesses, [&](const char* p) { return statuses_.contains(p); });
+    return nonempty(log) && std::ranges::all_of(kProcesses, [&](const char* p) { return watch_->runs(p); });
   });
   if (up) say("ingest, merge and planner run; lcm-logger writes " + log.string());
   took("start", since);
@@ -108,7 +106,7 @@ DemoRun::Step DemoRun::start() {
 DemoRun::Step DemoRun::send() {
   for (const DemoAgent& agent : scene_.agents) {
     if (agent.file) {
-      published_[agent.id] = std::make_unique<PublishedMap>(*live_, agent.id, "file", *agent.file);
+      watch_->publish(*live_, agent);
       continue;
     }
     const auto started = supervisor_.start(
@@ -126,14 +124,14 @@ DemoRun::Step DemoRun::follow_mapping() {
   const double since = now();
   double next_line = since;
   const auto done = [this] {
-    return std::ranges::all_of(scene_.agents, [this](const DemoAgent& agent) { return finished(agent); });
+    return std::ranges::all_of(scene_.agents, [this](const DemoAgent& agent) { return watch_->finished(agent); });
   };
   while (!done()) {
     if (now() > since + kMapping) return fail(Exit::kIncomplete, "INCOMPLETE", "the agents did not finish in time");
     live_->wait(0.3, end_requested);
     if (const Step fine = check("the agents"); !fine) return fine;
     // A copy: the list is replaced while an alignment waits for its answer.
-    const std::vector<AgentState> states = agents_ ? agents_->agents : std::vector<AgentState>();
+    const std::vector<AgentState> states = watch_->agents();
     for (const AgentState& state : states) {
       if (state.aligned) continue;
       if (const Step aligned = align(state); !aligned) return aligned;
@@ -141,7 +139,8 @@ DemoRun::Step DemoRun::follow_mapping() {
     if (now() < next_line) continue;
     next_line = now() + kProgress;
     std::string line;
-    for (const DemoAgent& agent : scene_.agents) line += agent.id + " " + std::to_string(progress(agent)) + " %   ";
+    for (const DemoAgent& agent : scene_.agents)
+      line += agent.id + " " + std::to_string(watch_->progress(agent)) + " %   ";
     say(line + "map " + format_count(static_cast<std::int64_t>(copies_->map.map().known_count())) + " voxels");
   }
   took("mapping", since);
@@ -155,8 +154,7 @@ DemoRun::Step DemoRun::align(const AgentState& state) {
   const auto answer = live_->ask("in/transform", encode(request, live_->bus().now()), request.id);
   if (!answer) return tl::unexpected(answer.error());
   say(state.id + " is aligned where it is known to have started");
-  // Else it would be asked for again until the next list of agents.
-  for (AgentState& listed : agents_->agents) listed.aligned = listed.aligned || listed.id == state.id;
+  watch_->note_aligned(state.id);
   return {};
 }
 
@@ -226,10 +224,12 @@ DemoRun::Step DemoRun::plan_after() {
   if (!scene_.start || scene_.edit.empty()) return {};
   const double since = now();
   const std::int64_t first = report_.path_before->plan_number;
-  report_.replanned = live_->wait(report_.path_before->active ? kReplan : 0.0, [&] {
-    const Path* latest = live_->path_for(active_path_);
-    return latest != nullptr && latest->plan_number > first;
-  });
+  if (report_.path_before->status == "OK") {
+    report_.replanned = live_->wait(kReplan, [&] {
+      const Path* latest = live_->path_for(active_path_);
+      return latest != nullptr && latest->plan_number > first;
+    });
+  }
   auto path = plan(false);
   if (!path) return tl::unexpected(path.error());
   took("path_after", since);
@@ -275,9 +275,9 @@ DemoRun::Step DemoRun::tell() {
   report_.map = &copies_->map.map();
   report_.conflicts = &copies_->conflicts.map();
   for (const DemoAgent& agent : scene_.agents) {
-    const AgentState* state = state_of(agent.id);
+    const AgentState* state = watch_->state_of(agent.id);
     if (state == nullptr) return fail(Exit::kIncomplete, "INCOMPLETE", "merge no longer lists " + agent.id);
-    report_.agents.push_back({*state, &copies_->agents.at(agent.id)->map(), bytes_sent(agent),
+    report_.agents.push_back({*state, &copies_->agents.at(agent.id)->map(), watch_->bytes_sent(agent),
                               agent.file ? std::nullopt : std::optional(agent.mapping_seconds)});
   }
   report_.edit = scene_.edit;
@@ -326,37 +326,6 @@ DemoRun::Step DemoRun::wait_for(const std::string& what, double seconds, const s
   if (done()) return {};
   return fail(Exit::kNoAnswer, "NO_ANSWER",
               "waited in vain for " + what + "; see " + (options_.out / "output").string());
-}
-
-const AgentState* DemoRun::state_of(const std::string& id) const {
-  if (!agents_) return nullptr;
-  const auto state = std::ranges::find(agents_->agents, id, &AgentState::id);
-  return state != agents_->agents.end() ? &*state : nullptr;
-}
-
-std::int64_t DemoRun::progress(const DemoAgent& agent) const {
-  if (agent.file) {
-    const AgentState* state = state_of(agent.id);
-    return state == nullptr ? 0 : 100 * state->known / published_.at(agent.id)->known();
-  }
-  const auto status = statuses_.find("sim-" + agent.id);
-  if (status == statuses_.end()) return 0;
-  const auto counter = status->second.counters.find("progress_percent");
-  return counter != status->second.counters.end() ? counter->second : 0;
-}
-
-bool DemoRun::finished(const DemoAgent& agent) const {
-  const AgentState* state = state_of(agent.id);
-  if (state == nullptr || !state->aligned || !state->synced) return false;
-  return agent.file ? published_.at(agent.id)->arrived() : progress(agent) >= 100;
-}
-
-std::int64_t DemoRun::bytes_sent(const DemoAgent& agent) const {
-  if (agent.file) return published_.at(agent.id)->bytes_sent();
-  const auto status = statuses_.find("sim-" + agent.id);
-  if (status == statuses_.end()) return 0;
-  const auto counter = status->second.counters.find("bytes_sent");
-  return counter != status->second.counters.end() ? counter->second : 0;
 }
 
 double DemoRun::now() const { return std::chrono::duration<double>(Supervisor::Clock::now() - began_).count(); }

@@ -1,12 +1,11 @@
 #pragma once
 
-#include <list>
 #include <memory>
 
 #include "cli/demo_report.hpp"
 #include "cli/demo_scene.hpp"
+#include "cli/demo_watch.hpp"
 #include "cli/live.hpp"
-#include "cli/publish.hpp"
 #include "cli/stack.hpp"
 
 namespace concord {
@@ -45,10 +44,6 @@ class DemoRun {
   [[nodiscard]] Step align(const AgentState& state);
   [[nodiscard]] Step settle();
   [[nodiscard]] tl::expected<Path, Failure> plan(bool keep_active);
-  [[nodiscard]] bool finished(const DemoAgent& agent) const;
-  [[nodiscard]] std::int64_t progress(const DemoAgent& agent) const;
-  [[nodiscard]] std::int64_t bytes_sent(const DemoAgent& agent) const;
-  [[nodiscard]] const AgentState* state_of(const std::string& id) const;
   void score_map(const BrickMap& before_edit);
   void show();
   void say(const std::string& line) const;
@@ -62,9 +57,7 @@ class DemoRun {
   Supervisor supervisor_;
   std::unique_ptr<Live> live_;
   std::unique_ptr<Copies> copies_;
-  std::map<std::string, std::unique_ptr<PublishedMap>> published_;
-  std::map<std::string, ProcessStatus> statuses_;
-  std::optional<AgentList> agents_;
+  std::unique_ptr<DemoWatch> watch_;
   std::string active_path_;  ///< the request that is kept up to date
   BrickMap before_edit_;
   DemoReport report_;

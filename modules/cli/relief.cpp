@@ -55,9 +55,9 @@ void for_each_column(const Columns& columns, Visit&& visit) {
   }
 }
 
-/// What is left of sorted values when half a percent is taken off each end.
+/// What is left of the values when a five-hundredth is taken off each end.
 std::pair<std::int32_t, std::int32_t> trimmed(std::vector<std::int32_t>& values) {
-  const std::size_t drop = values.size() / 200;
+  const std::size_t drop = values.size() / 500;
   std::nth_element(values.begin(), values.begin() + drop, values.end());
   const std::int32_t low = values[drop];
   std::nth_element(values.begin(), values.end() - 1 - drop, values.end());
@@ -121,6 +121,20 @@ std::uint32_t claims_of(const Overview& overview, const VoxelIndex& voxel, const
   return claims;
 }
 
+/// Twelve directions, evenly.
+constexpr std::array<std::array<float, 2>, 12> kRing = {{{1, 0},
+                                                         {.87F, .5F},
+                                                         {.5F, .87F},
+                                                         {0, 1},
+                                                         {-.5F, .87F},
+                                                         {-.87F, .5F},
+                                                         {-1, 0},
+                                                         {-.87F, -.5F},
+                                                         {-.5F, -.87F},
+                                                         {0, -1},
+                                                         {.5F, -.87F},
+                                                         {.87F, -.5F}}};
+
 /// How much light reaches a cell, 0 to 1: open sky (soft) and the sun at the upper left.
 class Light {
  public:
@@ -131,6 +145,18 @@ class Light {
     return (1.0F - 0.42F * closed_sky(column, row, here)) * (1.0F - 0.30F * shadow(column, row, here));
   }
 
+  /// Low, and hardly above the lowest surface around: floors are uneven.
+  [[nodiscard]] bool is_ground(int column, int row) const {
+    constexpr float kLow = 0.6F;
+    const float here = height(column, row), floor = static_cast<float>(relief_.floor);
+    if (here > floor + kLow) return false;
+    float lowest = here;
+    for (const float reach : {0.4F, 0.8F, 1.2F}) {
+      for (const auto& [dx, dy] : kRing) lowest = std::min(lowest, height_at(column, row, dx * reach, dy * reach));
+    }
+    return here < std::max(lowest, floor) + 1.5F * static_cast<float>(resolution_);
+  }
+
  private:
   [[nodiscard]] float height(int column, int row) const {
     column = std::clamp(column, 0, relief_.width - 1);
@@ -139,26 +165,17 @@ class Light {
     return cell.solid() ? std::max(cell.top, static_cast<float>(relief_.floor)) : static_cast<float>(relief_.floor);
   }
 
+  /// So many metres from a cell's middle, rounded to a cell.
+  [[nodiscard]] float height_at(int column, int row, float dx, float dy) const {
+    const auto cells = [&](float metres) { return static_cast<int>(std::lround(metres / resolution_)); };
+    return height(column + cells(dx), row + cells(dy));
+  }
+
   [[nodiscard]] float closed_sky(int column, int row, float here) const {
-    static constexpr std::array<std::array<float, 2>, 12> kRing = {{{1, 0},
-                                                                    {.87F, .5F},
-                                                                    {.5F, .87F},
-                                                                    {0, 1},
-                                                                    {-.5F, .87F},
-                                                                    {-.87F, .5F},
-                                                                    {-1, 0},
-                                                                    {-.87F, -.5F},
-                                                                    {-.5F, -.87F},
-                                                                    {0, -1},
-                                                                    {.5F, -.87F},
-                                                                    {.87F, -.5F}}};
     float closed = 0;
     for (const float reach : {0.12F, 0.3F, 0.6F}) {
-      const float cells = std::max(1.0F, reach / static_cast<float>(resolution_));
       for (const auto& [dx, dy] : kRing) {
-        const float rise = height(column + static_cast<int>(std::lround(dx * cells)),
-                                  row + static_cast<int>(std::lround(dy * cells))) -
-                           here;
+        const float rise = height_at(column, row, dx * reach, dy * reach) - here;
         closed += std::clamp(rise / (reach * 2.5F), 0.0F, 1.0F);
       }
     }
@@ -282,7 +299,7 @@ std::vector<std::uint32_t> shade(const Relief& relief, double resolution, double
       Rgb colour = kFloor;
       if (cell.solid()) {
         const auto rise = static_cast<float>(std::clamp((cell.top - relief.floor) / span, 0.0, 1.0));
-        const bool ground = cell.top < relief.floor + 1.5 * resolution;
+        const bool ground = light.is_ground(column, row);
         const float strength = ground ? 0.13F : 0.42F + 0.58F * std::sqrt(rise);
         const Rgb tint = ground ? mean_of(cell.claims) : tint_of(cell.claims, (column + row) / stripe);
         colour = kFloor.mixed(tint, strength).scaled(1.0F - 0.32F * rise * rise);

@@ -43,7 +43,7 @@ struct Relief {
   }
 };
 
-/// Looks down on the map. Far outliers (half a percent of the columns on each side) are left off the picture, routes,
+/// Looks down on the map. Far outliers (a five-hundredth of the columns on each side) are left off the picture, routes,
 /// edits, start and goal never are. @return a relief without cells where the map has nothing under the cut.
 [[nodiscard]] Relief look_down(const Overview& overview);
 

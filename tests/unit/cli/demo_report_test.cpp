@@ -1,0 +1,80 @@
+#include "cli/demo_report.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace concord {
+namespace {
+
+class DemoReportTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    VoxelMask all;
+    all.fill(~std::uint64_t{0});
+    map.set({0, 0, 0}, Brick::uniform(all, kOccupied));
+    report.map = &map;
+    report.conflicts = &conflicts;
+    AgentState state;
+    state.id = "a";
+    state.known = 512;
+    report.agents.push_back({state, &map, 1000, std::nullopt});
+    state.id = "b";
+    state.known = 100;
+    report.agents.push_back({state, &map, 234, std::nullopt});
+  }
+
+  BrickMap map, conflicts;
+  DemoReport report;
+};
+
+TEST_F(DemoReportTest, WhatWasNotAskedOrHasNoTruthIsNull) {
+  const nlohmann::json json = to_json(report);
+  for (const char* key : {"features", "edit", "path_before", "path_after", "replanned"}) {
+    EXPECT_TRUE(json.at(key).is_null()) << key;
+  }
+  EXPECT_TRUE(json["map"].at("precision").is_null());
+  EXPECT_TRUE(json["map"].at("recall").is_null());
+  EXPECT_TRUE(json["mapping_seconds"].at("one_agent").is_null());
+}
+
+TEST_F(DemoReportTest, CountsVoxelsAndBytes) {
+  const nlohmann::json json = to_json(report);
+  EXPECT_EQ(json["agents"][0]["voxels"], 512);
+  EXPECT_EQ(json["agents"][1]["voxels"], 100);
+  EXPECT_EQ(json["bytes_sent"], 1234);
+  EXPECT_EQ(json["map"]["occupied"], 512);
+}
+
+TEST_F(DemoReportTest, ScoresTheMapAsItEnds) {
+  report.robot = MapScore{0.9, 0.3, {{"glass", 0.0, false}}};
+  report.merged = MapScore{0.9, 0.8, {{"glass", 0.1, false}}};
+  EXPECT_EQ(to_json(report)["map"]["recall"], 0.8);
+  report.edited = MapScore{0.95, 0.85, {{"glass", 1.0, true}}};
+  const nlohmann::json json = to_json(report);
+  EXPECT_EQ(json["map"]["recall"], 0.85);
+  EXPECT_EQ(json["features"]["glass"], (nlohmann::json{{"robot", 0.0}, {"merged", 0.1}, {"edited", 1.0}}));
+}
+
+TEST_F(DemoReportTest, OneAgentTakesTheSumAllTheLongest) {
+  report.agents[0].mapping_seconds = 60.0;
+  EXPECT_FALSE(report.mapping_alone());
+  report.agents[1].mapping_seconds = 40.0;
+  EXPECT_EQ(report.mapping_alone(), 100.0);
+  EXPECT_EQ(report.mapping_together(), 60.0);
+}
+
+TEST_F(DemoReportTest, ThePageShowsPathsAndHoldsNoForeignMarkup) {
+  report.agents[0].state.kind = "<script>";
+  Path none;
+  none.status = "NO_VALID_PATH";
+  none.message = "walls & more";
+  report.path_after = none;
+  const std::string html = to_html(report);
+  EXPECT_EQ(html.find("<script>"), std::string::npos);
+  EXPECT_NE(html.find("&lt;script&gt;"), std::string::npos);
+  EXPECT_NE(html.find("NO_VALID_PATH"), std::string::npos);
+  EXPECT_NE(html.find("walls &amp; more"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace concord
