@@ -147,14 +147,14 @@ class Light {
 
   /// Low, and hardly above the lowest surface around: floors are uneven.
   [[nodiscard]] bool is_ground(int column, int row) const {
-    constexpr float kLow = 0.6F;
+    constexpr float kLow = 1.2F;
     const float here = height(column, row), floor = static_cast<float>(relief_.floor);
     if (here > floor + kLow) return false;
     float lowest = here;
     for (const float reach : {0.4F, 0.8F, 1.2F}) {
       for (const auto& [dx, dy] : kRing) lowest = std::min(lowest, height_at(column, row, dx * reach, dy * reach));
     }
-    return here < std::max(lowest, floor) + 1.5F * static_cast<float>(resolution_);
+    return here < std::max(lowest, floor) + 2.5F * static_cast<float>(resolution_);
   }
 
  private:
