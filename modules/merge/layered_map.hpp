@@ -33,7 +33,7 @@ class LayeredMap {
   void apply(const EditRequest& edit) { edits_.apply(edit, dirty_); }
   [[nodiscard]] const EditLayer& edits() const { return edits_; }
 
-  /// What `refold` changed, in ascending order.
+  /// What `refold` changed, ordered by tile and by position in the tile.
   struct Changes {
     std::vector<BrickIndex> map;
     std::vector<BrickIndex> conflicts;
