@@ -152,30 +152,35 @@ class Light {
     if (here > floor + kLow) return false;
     float lowest = here;
     for (const float reach : {0.4F, 0.8F, 1.2F}) {
-      for (const auto& [dx, dy] : kRing) lowest = std::min(lowest, height_at(column, row, dx * reach, dy * reach));
+      for (const auto& [dx, dy] : kRing) {
+        const Relief::Cell& other = cell(column + cells(dx * reach), row + cells(dy * reach));
+        if (other.solid()) lowest = std::min(lowest, other.top);
+      }
     }
     return here < std::max(lowest, floor) + 2.5F * static_cast<float>(resolution_);
   }
 
  private:
-  [[nodiscard]] float height(int column, int row) const {
+  /// The nearest one that is on the picture.
+  [[nodiscard]] const Relief::Cell& cell(int column, int row) const {
     column = std::clamp(column, 0, relief_.width - 1);
     row = std::clamp(row, 0, relief_.height - 1);
-    const Relief::Cell& cell = relief_.cells[static_cast<std::size_t>(row) * relief_.width + column];
-    return cell.solid() ? std::max(cell.top, static_cast<float>(relief_.floor)) : static_cast<float>(relief_.floor);
+    return relief_.cells[static_cast<std::size_t>(row) * relief_.width + column];
   }
 
-  /// So many metres from a cell's middle, rounded to a cell.
-  [[nodiscard]] float height_at(int column, int row, float dx, float dy) const {
-    const auto cells = [&](float metres) { return static_cast<int>(std::lround(metres / resolution_)); };
-    return height(column + cells(dx), row + cells(dy));
+  [[nodiscard]] float height(int column, int row) const {
+    const auto floor = static_cast<float>(relief_.floor);
+    const Relief::Cell& here = cell(column, row);
+    return here.solid() ? std::max(here.top, floor) : floor;
   }
+
+  [[nodiscard]] int cells(float metres) const { return static_cast<int>(std::lround(metres / resolution_)); }
 
   [[nodiscard]] float closed_sky(int column, int row, float here) const {
     float closed = 0;
     for (const float reach : {0.12F, 0.3F, 0.6F}) {
       for (const auto& [dx, dy] : kRing) {
-        const float rise = height_at(column, row, dx * reach, dy * reach) - here;
+        const float rise = height(column + cells(dx * reach), row + cells(dy * reach)) - here;
         closed += std::clamp(rise / (reach * 2.5F), 0.0F, 1.0F);
       }
     }
