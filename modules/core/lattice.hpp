@@ -29,7 +29,7 @@ struct TileIndex {
 
 inline constexpr int kBrickSide = 8;
 inline constexpr int kBrickVoxels = 512;
-inline constexpr int kTileSide = 4;                         // bricks
+inline constexpr int kTileSide = 4;  // bricks
 inline constexpr int kTileBricks = 64;
 inline constexpr int kTileVoxelSide = kTileSide * kBrickSide;
 

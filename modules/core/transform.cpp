@@ -7,7 +7,8 @@ Result<Transform> make_transform(const Eigen::Vector3d& position, const Eigen::V
     return refuse(Code::kNotFinite, "transform has a component that is not finite");
   }
   if (std::abs(xyzw.norm() - 1.0) > 1e-3) {
-    return refuse(Code::kBadTransform, "quaternion has norm " + std::to_string(xyzw.norm()) + "; send a unit quaternion (x y z w)");
+    return refuse(Code::kBadTransform,
+                  "quaternion has norm " + std::to_string(xyzw.norm()) + "; send a unit quaternion (x y z w)");
   }
   if (position.cwiseAbs().maxCoeff() > 10'000.0) {
     return refuse(Code::kBadTransform, "translation is over 10 km; is it in metres?");
