@@ -1,5 +1,6 @@
 #include "bus/site.hpp"
 
+#include <fstream>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -10,6 +11,8 @@
 
 namespace concord {
 namespace {
+
+constexpr std::size_t kMaxSiteFile = 1 << 20;
 
 [[noreturn]] void fail(const YAML::Node& node, const std::string& what) {
   throw ConfigError("line " + std::to_string(node.Mark().line + 1) + ": " + what);
@@ -163,13 +166,23 @@ Site read_site(const YAML::Node& root, const std::filesystem::path& directory) {
 
 }  // namespace
 
-Site load_site(const std::filesystem::path& file) {
+Site parse_site(const std::string& yaml, const std::filesystem::path& directory) {
+  if (yaml.size() > kMaxSiteFile) throw ConfigError("is larger than any site file");
   try {
-    return read_site(YAML::LoadFile(file), std::filesystem::absolute(file).parent_path());
-  } catch (const YAML::BadFile&) {
-    throw ConfigError(file.string() + ": cannot be read");
+    return read_site(YAML::Load(yaml), directory);
   } catch (const YAML::Exception& e) {
-    throw ConfigError(file.string() + ": " + e.what());
+    throw ConfigError(e.what());
+  }
+}
+
+Site load_site(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string yaml(kMaxSiteFile + 1, ' ');
+  in.read(yaml.data(), static_cast<std::streamsize>(yaml.size()));
+  yaml.resize(static_cast<std::size_t>(in.gcount()));
+  if (in.bad() || (!in.eof() && yaml.size() <= kMaxSiteFile)) throw ConfigError(file.string() + ": cannot be read");
+  try {
+    return parse_site(yaml, std::filesystem::absolute(file).parent_path());
   } catch (const ConfigError& e) {
     throw ConfigError(file.string() + ": " + e.what());
   }

@@ -56,6 +56,10 @@ class ConfigError : public std::runtime_error {
 /// @throws ConfigError for a missing file, bad YAML, an unknown key or a value out of range; names file and line.
 [[nodiscard]] Site load_site(const std::filesystem::path& file);
 
+/// The same for the text of a site file; a state folder that is not absolute lies in `directory`. The error names no
+/// file.
+[[nodiscard]] Site parse_site(const std::string& yaml, const std::filesystem::path& directory);
+
 /// The effective values, as YAML: what the process logs at its start.
 [[nodiscard]] std::string to_yaml(const Site& site);
 

@@ -5,12 +5,13 @@
 namespace concord {
 namespace {
 
-/// Well-formed UTF-8 (RFC 3629): what JSON, logs and databases may be given.
+/// Well-formed UTF-8 (RFC 3629) without zero bytes, at which LCM's encoder would cut: what JSON, logs and databases may
+/// be given.
 bool is_utf8(std::span<const std::uint8_t> text) {
   while (!text.empty()) {
     const std::uint8_t lead = text.front();
     const std::size_t length = lead < 0x80 ? 1 : lead >= 0xC2 && lead < 0xE0 ? 2 : lead >= 0xE0 && lead < 0xF0 ? 3 : 4;
-    if ((lead >= 0x80 && lead < 0xC2) || lead > 0xF4 || length > text.size()) return false;
+    if (lead == 0 || (lead >= 0x80 && lead < 0xC2) || lead > 0xF4 || length > text.size()) return false;
     std::uint32_t code = length == 1 ? lead : lead & (0x7Fu >> length);
     for (std::size_t i = 1; i < length; ++i) {
       if ((text[i] & 0xC0) != 0x80) return false;

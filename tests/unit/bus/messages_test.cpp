@@ -134,6 +134,15 @@ TEST(Messages, texts_that_are_not_utf8_are_refused) {
   }
 }
 
+TEST(Messages, texts_with_a_zero_inside_are_refused) {
+  Bytes bytes = encode(Answer{"r", "merge", true, "OK", "text", 0, 0}, 1);
+  const std::string text = "text";
+  const auto at = std::search(bytes.begin(), bytes.end(), text.begin(), text.end());
+  ASSERT_NE(at, bytes.end());
+  at[1] = 0;
+  expect_refused(decode<Answer>(bytes), Code::kMalformed, "");
+}
+
 TEST(Messages, long_texts_for_people_are_cut_between_characters) {
   std::string message = "x";
   while (message.size() < 1000) message += "€";
