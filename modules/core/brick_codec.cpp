@@ -85,7 +85,18 @@ void append_mask(Bytes& out, Mask form, const VoxelMask& mask, std::uint64_t use
   }
 }
 
+/// One bit a voxel: whether it holds the higher of two values. Almost every brick of a binary map goes this way.
+void append_pair_indices(Bytes& out, std::span<const LogOdds> packed, LogOdds higher) {
+  for (std::size_t begin = 0; begin < packed.size(); begin += 8) {
+    const std::size_t count = std::min<std::size_t>(8, packed.size() - begin);
+    unsigned byte = 0;
+    for (std::size_t i = 0; i < count; ++i) byte |= static_cast<unsigned>(packed[begin + i] == higher) << i;
+    out.push_back(static_cast<std::uint8_t>(byte));
+  }
+}
+
 void append_indices(Bytes& out, std::span<const LogOdds> packed, const Palette& palette) {
+  if (palette.size == 2) return append_pair_indices(out, packed, palette.values[1]);
   const std::size_t bits = index_bits(palette.size);
   std::uint32_t pending = 0;
   std::size_t pending_bits = 0;
