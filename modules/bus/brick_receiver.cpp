@@ -74,7 +74,8 @@ void BrickReceiver::forget_held() {
 }
 
 /// Whether what is said under this epoch and frame counts; moves on to a newer epoch.
-bool BrickReceiver::enter(std::int64_t boot_id, const std::string& frame_id, double resolution) {
+bool BrickReceiver::enter(const Origin& origin) {
+  const auto& [boot_id, incarnation, frame_id, resolution] = origin;
   const std::int64_t time = bus_.now();
   if (!(std::abs(resolution - config_.resolution) <= 1e-9)) {
     counters_.refused(config_.stream,
@@ -83,7 +84,7 @@ bool BrickReceiver::enter(std::int64_t boot_id, const std::string& frame_id, dou
     return false;
   }
   if (boot_id == boot_id_) {
-    if (frame_id != frame_id_) {
+    if (frame_id != frame_id_ || incarnation != incarnation_) {
       counters_.refused(config_.stream, {Code::kBadFrame, "frame changed without a new epoch"});
       return false;
     }
@@ -101,8 +102,10 @@ bool BrickReceiver::enter(std::int64_t boot_id, const std::string& frame_id, dou
   asked_up_to_ = 0;
   ask_at_ = 0;
   covered_.clear();
-  const bool same = frame_id == frame_id_ && !frame_id.empty();
+  full_ = false;
+  const bool same = frame_id == frame_id_ && incarnation == incarnation_ && !frame_id.empty();
   frame_id_ = frame_id;
+  incarnation_ = incarnation;
   if (same) {
     doubt_held();
   } else {
@@ -121,6 +124,7 @@ bool BrickReceiver::enter(std::int64_t boot_id, const std::string& frame_id, dou
 /// What is held may no longer be so: the versions it came with say nothing any more.
 void BrickReceiver::doubt_held() {
   covered_.clear();
+  std::erase_if(held_, [](const auto& entry) { return entry.second.gone; });
   for (auto& [index, held] : held_) held.version = 0;
   unconfirmed_ = !held_.empty();
 }
@@ -162,14 +166,22 @@ void BrickReceiver::on_packet(const BrickPacket& packet) {
   }
   auto bricks = unpack(packet);
   if (!bricks) return counters_.refused(channels_.bricks, bricks.error());
-  if (!enter(packet.boot_id, packet.frame_id, packet.resolution)) return;
-  const bool more_holes =
-      covered_.intervals().size() >= kMaxIntervalsHeld && !covered_.touches(packet.first_version, packet.last_version);
-  if (more_holes || static_cast<std::int64_t>(held_.size() + bricks->size()) > config_.max_bricks) {
+  if (!enter({packet.boot_id, packet.incarnation, packet.frame_id, packet.resolution})) return;
+  if (!has_room(packet, *bricks)) {
+    full_ = true;
     return counters_.refused(channels_.bricks, {Code::kTooLarge, "stream has more bricks or holes than are kept"});
   }
   for (Arrived& arrived : *bricks) hold(std::move(arrived));
   cover(packet.first_version, packet.last_version);
+}
+
+bool BrickReceiver::has_room(const BrickPacket& packet, const std::vector<Arrived>& bricks) const {
+  if (covered_.intervals().size() >= kMaxIntervalsHeld &&
+      !covered_.touches(packet.first_version, packet.last_version)) {
+    return false;
+  }
+  const auto added = std::ranges::count_if(bricks, [&](const Arrived& a) { return !held_.contains(a.index); });
+  return static_cast<std::int64_t>(held_.size()) + added <= config_.max_bricks;
 }
 
 void BrickReceiver::hold(Arrived arrived) {
@@ -187,7 +199,6 @@ void BrickReceiver::hold(Arrived arrived) {
 void BrickReceiver::cover(std::int64_t first, std::int64_t last) {
   if (first <= asked_up_to_ && !covered_.contains(first, last)) last_progress_ = bus_.now();
   covered_.add(first, last);
-  announced_ = std::max(announced_, last);
 }
 
 /// All that the present epoch has was sent again: what it did not speak of is no longer there.
@@ -210,10 +221,20 @@ void BrickReceiver::drop_unconfirmed() {
 }
 
 void BrickReceiver::on_digest(const BrickDigest& digest) {
-  if (!enter(digest.boot_id, digest.frame_id, digest.resolution)) return;
+  if (!enter({digest.boot_id, digest.incarnation, digest.frame_id, digest.resolution})) return;
   digest_heard_ = true;
-  announced_ = std::max(announced_, digest.revision);
-  if (digest.revision == announced_) compare(digest);  // else packets overtook it
+  announced_ = digest.revision;
+  if (covered_.highest() > announced_) return cut_at(announced_);
+  compare(digest);
+}
+
+/// The digest is the authority: what packets said of versions beyond it (they overtook it, or were not the sender's)
+/// must be said again. The next digest compares.
+void BrickReceiver::cut_at(std::int64_t revision) {
+  covered_.remove(revision + 1, covered_.highest());
+  for (auto& [index, held] : held_) {
+    if (held.version > revision) held.version = 0;
+  }
 }
 
 void BrickReceiver::compare(const BrickDigest& digest) {
@@ -233,17 +254,18 @@ void BrickReceiver::compare(const BrickDigest& digest) {
 }
 
 void BrickReceiver::request_missing() {
-  if (!heard() || frame_id_ == closed_frame_ || announced_ == 0) return;
-  if (covered_.contains(1, announced_)) {
+  if (!heard() || full_ || frame_id_ == closed_frame_ || revision() == 0) return;
+  if (covered_.contains(1, revision())) {
     ask_at_ = 0;
     return;
   }
   const std::int64_t time = bus_.now();
-  auto holes = covered_.missing(announced_);
-  const bool quiet = time - last_heard_ > kQuiet;
   const bool awaiting = asked_up_to_ > 0 && time - last_progress_ < kQuiet;
+  if (awaiting) return;
+  auto holes = covered_.missing(revision());
+  const bool quiet = time - last_heard_ > kQuiet;
   if (!quiet && holes.back().second == announced_) holes.pop_back();  // the tail may still be on its way
-  if (holes.empty() || awaiting) return;
+  if (holes.empty()) return;
   if (ask_at_ == 0) {
     ask_at_ = time + static_cast<std::int64_t>(next_random(random_) % kMaxBackOff);
     return;

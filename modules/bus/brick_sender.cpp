@@ -13,20 +13,17 @@ constexpr std::int64_t kDigestPeriod = 1'000'000;
 /// A pass ends with a digest, but a trickle of changes is not doubled by digests.
 constexpr std::int64_t kDigestAfterPass = 50'000;
 constexpr std::int64_t kGatherRepairs = 80'000;
-/// What may be sent in one go after a pause: well inside a default socket buffer.
-constexpr double kBurstBytes = 100'000;
+/// Bricks that are gone keep a version, so that receivers learn of it; beyond this many more than there are bricks,
+/// a new epoch forgets them.
+constexpr std::int64_t kMostGone = 4096;
+constexpr std::size_t kMaxRepairs = 4096;  ///< intervals
 /// What the wire adds to a packet's data, for the pace.
 constexpr double kOverheadBytes = 160;
 
 }  // namespace
 
 BrickSender::BrickSender(Bus& bus, Counters& counters, Config config, const BrickMap& map)
-    : bus_(bus),
-      counters_(counters),
-      config_(std::move(config)),
-      channels_(config_.stream),
-      map_(map),
-      last_step_(bus.now()) {
+    : bus_(bus), counters_(counters), config_(std::move(config)), channels_(config_.stream), map_(map) {
   bus_.subscribe(channels_.need, [this, alive = std::weak_ptr(alive_)](const std::string& channel, auto bytes) {
     if (alive.expired()) return;
     const auto request = decode<BrickRequest>(bytes);
@@ -55,7 +52,8 @@ void BrickSender::begin(const std::string& frame_id) {
   assert(is_name(frame_id));
   renew_epoch();
   frame_id_ = frame_id;
-  for (const BrickIndex index : map_.sorted_bricks()) touch(index);
+  // Receivers that have all this already are in sync with the first digest; others ask for what they miss.
+  for (const BrickIndex index : map_.sorted_bricks()) enlist(index, content_hash(index, *map_.find(index)), false);
 }
 
 void BrickSender::end() {
@@ -70,7 +68,14 @@ void BrickSender::touch(BrickIndex index) {
   const std::uint64_t content = gone ? 0 : content_hash(index, *brick);
   const auto known = entries_.find(index);
   if (known == entries_.end() ? gone : known->second.gone == gone && known->second.content == content) return;
-  Entry& entry = known != entries_.end() ? known->second : entries_[index];
+  enlist(index, content, gone);
+  pending_.add(revision_, revision_);
+  const auto gone_bricks = static_cast<std::int64_t>(entries_.size()) - brick_count_;
+  if (gone_bricks > brick_count_ + kMostGone) begin(std::string(frame_id_));
+}
+
+void BrickSender::enlist(BrickIndex index, std::uint64_t content, bool gone) {
+  Entry& entry = entries_[index];
   if (entry.version != 0) live_.erase(entry.version);
   content_ -= entry.content;
   brick_count_ -= entry.gone ? 0 : 1;
@@ -78,33 +83,34 @@ void BrickSender::touch(BrickIndex index) {
   content_ += entry.content;
   brick_count_ += entry.gone ? 0 : 1;
   live_.emplace_hint(live_.end(), entry.version, index);
-  pending_.add(entry.version, entry.version);
 }
 
 void BrickSender::on_request(const BrickRequest& request) {
   if (!begun_ || request.boot_id != config_.boot_id) return;
   if (repairs_.empty()) repairs_due_ = bus_.now() + kGatherRepairs;
   for (const auto& [first, last] : request.intervals) {
+    if (repairs_.intervals().size() >= kMaxRepairs) return;  // it will ask again
     if (first <= revision_) repairs_.add(first, std::min(last, revision_));
   }
 }
 
 void BrickSender::send_now() {
   const std::int64_t time = bus_.now();
-  const double earned =
-      config_.bytes_per_second * static_cast<double>(std::max<std::int64_t>(0, time - last_step_)) * 1e-6;
-  budget_ = std::min(budget_ + earned, kBurstBytes);
-  last_step_ = time;
   if (!begun_) return;
+  const double available = bus_.pace().available(time, config_.bytes_per_second);
+  // Half of what there is: the next sender must not starve behind a large one.
+  const double keep = available / 2;
   if (time >= next_digest_) send_digest();
   const bool had_work = !pending_.empty() || repairs_ready();
-  while (budget_ > 0 && (!pending_.empty() || repairs_ready())) {
+  double spent = 0;
+  while (available - spent > keep && (!pending_.empty() || repairs_ready())) {
     // In turns: a late joiner who asks for everything must not hold up what is new, nor what is new the joiner.
     const bool repair = pending_.empty() || (repair_next_ && repairs_ready());
     repair_next_ = !repair;
     const auto [first, last] = *(repair ? repairs_ : pending_).intervals().begin();
-    send_packet(first, last);
+    spent += send_packet(first, last);
   }
+  bus_.pace().spend(spent);
   if (!had_work || !pending_.empty() || repairs_ready()) return;
   next_digest_ = std::min(next_digest_, last_digest_ + kDigestAfterPass);
   if (time >= next_digest_) send_digest();
@@ -112,8 +118,10 @@ void BrickSender::send_now() {
 
 bool BrickSender::repairs_ready() const { return !repairs_.empty() && bus_.now() >= repairs_due_; }
 
-void BrickSender::send_packet(std::int64_t first, std::int64_t last) {
-  BrickPacket packet{bus_.now(), config_.boot_id, frame_id_, config_.resolution, first, last, 0, {}};
+/// Returns what it costs.
+double BrickSender::send_packet(std::int64_t first, std::int64_t last) {
+  BrickPacket packet{bus_.now(), config_.boot_id,    frame_id_, config_.resolution, first, last, 0,
+                     {},         config_.incarnation};
   BrickIndex before{};
   Bytes one;
   for (auto it = live_.lower_bound(first); it != live_.end() && it->first <= last; ++it) {
@@ -136,14 +144,14 @@ void BrickSender::send_packet(std::int64_t first, std::int64_t last) {
   pending_.remove(packet.first_version, packet.last_version);
   repairs_.remove(packet.first_version, packet.last_version);
   const Bytes bytes = encode(packet);
-  budget_ -= static_cast<double>(packet.data.size()) + kOverheadBytes;
   bytes_sent_ += static_cast<std::int64_t>(bytes.size());
   bus_.publish(channels_.bricks, bytes);
+  return static_cast<double>(packet.data.size()) + kOverheadBytes;
 }
 
 void BrickSender::send_digest() {
-  const Bytes bytes = encode(
-      BrickDigest{bus_.now(), config_.boot_id, frame_id_, config_.resolution, revision_, brick_count_, content_});
+  const Bytes bytes = encode(BrickDigest{bus_.now(), config_.boot_id, frame_id_, config_.resolution, revision_,
+                                         brick_count_, content_, config_.incarnation});
   last_digest_ = bus_.now();
   next_digest_ = last_digest_ + kDigestPeriod;
   bytes_sent_ += static_cast<std::int64_t>(bytes.size());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -53,7 +54,8 @@ class BrickSender {
     std::string stream;  ///< e.g. "in/robot1", "out/map"
     double resolution = 0.05;
     double bytes_per_second = 5e6;
-    std::int64_t boot_id = 0;  ///< microseconds of this start: greater than any earlier one
+    std::int64_t boot_id = 0;      ///< microseconds of this start: greater than any earlier one
+    std::int64_t incarnation = 0;  ///< another one: what was removed has come again, and is not what it was
   };
 
   BrickSender(Bus& bus, Counters& counters, Config config, const BrickMap& map);
@@ -61,7 +63,8 @@ class BrickSender {
   BrickSender(const BrickSender&) = delete;
   BrickSender& operator=(const BrickSender&) = delete;
 
-  /// A new frame: everything sent so far is void; every brick in the map now is sent. Nothing is sent before the first.
+  /// A new frame: everything said so far is void. What is in the map now is announced, and sent to who asks for it.
+  /// Nothing is sent before the first.
   void begin(const std::string& frame_id);
   /// The owner changed this brick (or emptied it); one that is as it was sent costs nothing. @pre begin was called.
   void touch(BrickIndex index);
@@ -84,7 +87,8 @@ class BrickSender {
 
   void renew_epoch();
   [[nodiscard]] bool repairs_ready() const;
-  void send_packet(std::int64_t first, std::int64_t last);
+  void enlist(BrickIndex index, std::uint64_t content, bool gone);
+  double send_packet(std::int64_t first, std::int64_t last);
   void send_digest();
   void on_request(const BrickRequest& request);
 
@@ -106,8 +110,6 @@ class BrickSender {
   VersionSet repairs_;                       ///< asked for, gathered until repairs_due_
   std::int64_t repairs_due_ = 0;
   bool repair_next_ = false;
-  double budget_ = 0;  ///< bytes that may be sent now
-  std::int64_t last_step_;
   std::int64_t last_digest_ = 0;
   std::int64_t next_digest_ = 0;
   std::int64_t bytes_sent_ = 0;
@@ -119,10 +121,10 @@ class BrickReceiver {
   struct Config {
     std::string stream;
     double resolution = 0.05;             ///< packets of another one are refused
-    std::int64_t max_bricks = 4'000'000;  ///< beyond it packets are refused and counted
+    std::int64_t max_bricks = 8'000'000;  ///< further ones are refused and counted, and no longer asked for
   };
   struct Events {
-    /// A new frame (or the first): all bricks of the one before are void.
+    /// A new frame or incarnation (or the first): all bricks of the one before are void.
     std::function<void(const std::string& frame_id)> on_frame;
     /// A brick is now this; empty: gone. Called only when the content differs.
     std::function<void(BrickIndex, Brick)> on_brick;
@@ -144,7 +146,8 @@ class BrickReceiver {
   [[nodiscard]] bool synced() const;
   [[nodiscard]] bool heard() const { return boot_id_ != 0; }
   [[nodiscard]] const std::string& frame_id() const { return frame_id_; }
-  [[nodiscard]] std::int64_t revision() const { return announced_; }
+  [[nodiscard]] std::int64_t incarnation() const { return incarnation_; }
+  [[nodiscard]] std::int64_t revision() const { return std::max(announced_, covered_.highest()); }
   /// Versions announced but not received.
   [[nodiscard]] std::int64_t missing() const;
 
@@ -165,7 +168,17 @@ class BrickReceiver {
     Brick brick;
   };
 
-  bool enter(std::int64_t boot_id, const std::string& frame_id, double resolution);
+  /// Who says it: what packets and digests have in common.
+  struct Origin {
+    std::int64_t boot_id;
+    std::int64_t incarnation;
+    const std::string& frame_id;
+    double resolution;
+  };
+
+  bool enter(const Origin& origin);
+  [[nodiscard]] bool has_room(const BrickPacket& packet, const std::vector<Arrived>& bricks) const;
+  void cut_at(std::int64_t revision);
   [[nodiscard]] Result<std::vector<Arrived>> unpack(const BrickPacket& packet) const;
   void hold(Arrived arrived);
   void cover(std::int64_t first, std::int64_t last);
@@ -183,15 +196,17 @@ class BrickReceiver {
   std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  ///< timers of the bus outlive this
 
   std::int64_t boot_id_ = 0;
+  std::int64_t incarnation_ = 0;
   std::string frame_id_;
   std::optional<std::string> closed_frame_;
-  std::int64_t announced_ = 0;
+  std::int64_t announced_ = 0;  ///< by the last digest
   VersionSet covered_;
   std::unordered_map<BrickIndex, Held, IndexHash> held_;
   std::int64_t brick_count_ = 0;
   std::uint64_t content_ = 0;
   bool unconfirmed_ = false;   ///< some held bricks are from an earlier epoch
   bool digest_heard_ = false;  ///< in this epoch: before it nobody knows how much there is
+  bool full_ = false;          ///< the stream has more than is kept here
   std::int64_t last_heard_ = 0;
   std::int64_t last_progress_ = 0;
   std::int64_t asked_up_to_ = 0;

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include "bus/pace.hpp"
 #include "core/byte_stream.hpp"
 
 namespace concord {
@@ -46,6 +47,12 @@ class Bus {
   virtual void every(std::int64_t period, Task task) = 0;
   /// Microseconds since 1970; in a replay the log's time.
   [[nodiscard]] virtual std::int64_t now() const = 0;
+
+  /// What all streams that are sent on this bus share.
+  [[nodiscard]] Pace& pace() { return pace_; }
+
+ private:
+  Pace pace_;
 };
 
 }  // namespace concord

@@ -24,7 +24,8 @@ struct BrickPacket {
   std::int64_t first_version = 0;  ///< the packet covers [first_version, last_version]
   std::int64_t last_version = 0;
   std::int32_t count = 0;
-  Bytes data;  ///< `count` bricks: see brick_stream.cpp; checked against the packet's checksum
+  Bytes data;  ///< `count` bricks, see stream.md; checked against the packet's checksum
+  std::int64_t incarnation = 0;
 };
 
 struct BrickDigest {
@@ -35,6 +36,7 @@ struct BrickDigest {
   std::int64_t revision = 0;
   std::int64_t brick_count = 0;
   std::uint64_t content = 0;  ///< core/brick_map.hpp: digest()
+  std::int64_t incarnation = 0;
 };
 
 struct BrickRequest {
@@ -52,11 +54,18 @@ struct OctomapMessage {
 
 struct CloudMessage {
   std::int64_t utime = 0;
+  std::int64_t boot_id = 0;
   std::int64_t sequence = 0;
   std::string frame_id;
   std::optional<Transform> T_agent_sensor;
   double max_range = 0;
   std::vector<Eigen::Vector3f> points;  ///< agent's frame; may hold NaN, as sensors send it
+};
+
+/// The agent's id stands in the channel: out/frame_over/AGENT.
+struct FrameOver {
+  std::int64_t utime = 0;
+  std::string frame_id;
 };
 
 struct MapPose {
@@ -98,6 +107,7 @@ struct ProcessStatus {
 [[nodiscard]] Bytes encode(const OctomapMessage& value);
 [[nodiscard]] Bytes encode(const CloudMessage& value);
 [[nodiscard]] Bytes encode(const AgentPose& value);
+[[nodiscard]] Bytes encode(const FrameOver& value);
 [[nodiscard]] Bytes encode(const MapPose& value);
 [[nodiscard]] Bytes encode(const TransformRequest& value, std::int64_t utime);
 /// Voxels travel as boxes; `resolution` is the map's.
@@ -139,6 +149,8 @@ Decoded<CloudMessage> decode(std::span<const std::uint8_t> bytes);
 /// The agent's id stands in the channel, not in the message: the subscriber fills it in.
 template <>
 Decoded<AgentPose> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<FrameOver> decode(std::span<const std::uint8_t> bytes);
 template <>
 Decoded<MapPose> decode(std::span<const std::uint8_t> bytes);
 template <>

@@ -3,6 +3,7 @@
 #include <concord/agents_t.hpp>
 #include <concord/answer_t.hpp>
 #include <concord/downsampled_t.hpp>
+#include <concord/frame_over_t.hpp>
 #include <concord/map_list_t.hpp>
 #include <concord/map_pose_t.hpp>
 #include <concord/path_t.hpp>
@@ -47,6 +48,22 @@ agent_state_t to_wire(const AgentState& agent) {
 }
 
 }  // namespace
+
+Bytes encode(const FrameOver& value) {
+  frame_over_t out;
+  out.utime = value.utime;
+  out.frame_id = value.frame_id;
+  return wire::to_bytes(out);
+}
+
+template <>
+Decoded<FrameOver> decode<FrameOver>(std::span<const std::uint8_t> bytes) {
+  static constexpr WireField kLayout[] = {fixed(8), text(wire::kNameLength)};
+  const auto in = wire::from_bytes<frame_over_t>(bytes, kLayout);
+  if (!in) return bad(in.error());
+  if (!is_name(in->frame_id)) return bad(Code::kBadFrame, "frame_id is not a name");
+  return FrameOver{in->utime, in->frame_id};
+}
 
 Bytes encode(const MapPose& value) {
   map_pose_t out;

@@ -44,6 +44,7 @@ Bytes encode(const BrickPacket& value) {
   brick_packet_t out;
   out.utime = value.utime;
   out.boot_id = value.boot_id;
+  out.incarnation = value.incarnation;
   out.frame_id = value.frame_id;
   out.submap_id = 0;
   out.resolution = value.resolution;
@@ -58,7 +59,7 @@ Bytes encode(const BrickPacket& value) {
 
 template <>
 Decoded<BrickPacket> decode<BrickPacket>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {fixed(16), text(wire::kNameLength), fixed(4 + 8 + 8 + 8 + 4 + 4),
+  static constexpr WireField kLayout[] = {fixed(24), text(wire::kNameLength), fixed(4 + 8 + 8 + 8 + 4 + 4),
                                           count(kMaxPacketBytes), array(1)};
   auto in = wire::from_bytes<brick_packet_t>(bytes, kLayout);
   if (!in) return bad(in.error());
@@ -69,14 +70,15 @@ Decoded<BrickPacket> decode<BrickPacket>(std::span<const std::uint8_t> bytes) {
   }
   if (in->submap_id != 0) return bad(Code::kBadRequest, "submap_id must be 0");
   if (checksum(in->data) != in->checksum) return bad(Code::kMalformed, "checksum of a brick packet is wrong");
-  return BrickPacket{in->utime,         in->boot_id,      in->frame_id, in->resolution,
-                     in->first_version, in->last_version, in->count,    std::move(in->data)};
+  return BrickPacket{in->utime,        in->boot_id, in->frame_id,        in->resolution, in->first_version,
+                     in->last_version, in->count,   std::move(in->data), in->incarnation};
 }
 
 Bytes encode(const BrickDigest& value) {
   brick_digest_t out;
   out.utime = value.utime;
   out.boot_id = value.boot_id;
+  out.incarnation = value.incarnation;
   out.frame_id = value.frame_id;
   out.submap_id = 0;
   out.resolution = value.resolution;
@@ -88,7 +90,7 @@ Bytes encode(const BrickDigest& value) {
 
 template <>
 Decoded<BrickDigest> decode<BrickDigest>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {fixed(16), text(wire::kNameLength), fixed(4 + 8 + 8 + 8 + 8)};
+  static constexpr WireField kLayout[] = {fixed(24), text(wire::kNameLength), fixed(4 + 8 + 8 + 8 + 8)};
   const auto in = wire::from_bytes<brick_digest_t>(bytes, kLayout);
   if (!in) return bad(in.error());
   // An empty frame says that the stream has ended.
@@ -106,7 +108,8 @@ Decoded<BrickDigest> decode<BrickDigest>(std::span<const std::uint8_t> bytes) {
                      in->resolution,
                      in->revision,
                      in->brick_count,
-                     static_cast<std::uint64_t>(in->content)};
+                     static_cast<std::uint64_t>(in->content),
+                     in->incarnation};
 }
 
 Bytes encode(const BrickRequest& value, std::int64_t utime) {
@@ -161,6 +164,7 @@ Decoded<OctomapMessage> decode<OctomapMessage>(std::span<const std::uint8_t> byt
 Bytes encode(const CloudMessage& value) {
   cloud_t out;
   out.utime = value.utime;
+  out.boot_id = value.boot_id;
   out.sequence = value.sequence;
   out.frame_id = value.frame_id;
   out.has_sensor_pose = value.T_agent_sensor.has_value();
@@ -172,7 +176,7 @@ Bytes encode(const CloudMessage& value) {
 
 template <>
 Decoded<CloudMessage> decode<CloudMessage>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {fixed(16),
+  static constexpr WireField kLayout[] = {fixed(24),
                                           text(wire::kNameLength),
                                           fixed(1 + wire::kTransformBytes + 8),
                                           count(kMaxCloudPoints),
@@ -182,11 +186,12 @@ Decoded<CloudMessage> decode<CloudMessage>(std::span<const std::uint8_t> bytes) 
   const auto in = wire::from_bytes<cloud_t>(bytes, kLayout);
   if (!in) return bad(in.error());
   if (auto ok = check_frame(in->frame_id); !ok) return bad(ok.error());
+  if (in->boot_id < 1) return bad(Code::kBadRequest, "boot_id is the time of the sender's start");
   if (in->sequence < 0) return bad(Code::kBadRequest, "sequence counts up from 0");
   if (!(in->max_range >= 0 && in->max_range <= 1000)) {
     return bad(Code::kBadRequest, "max_range must lie between 0 (no limit) and 1000 m");
   }
-  CloudMessage out{in->utime, in->sequence, in->frame_id, std::nullopt, in->max_range, {}};
+  CloudMessage out{in->utime, in->boot_id, in->sequence, in->frame_id, std::nullopt, in->max_range, {}};
   if (in->has_sensor_pose) {
     auto pose = wire::from_wire(in->T_agent_sensor);
     if (!pose) return bad(pose.error());
