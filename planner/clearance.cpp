@@ -91,21 +91,27 @@ double nearest_along(const Grid& grid, const Segment& s, double least) {
   return least;
 }
 
-}  // namespace
-
-double clearance(const Grid& grid, std::span<const Eigen::Vector2d> points, double reach) {
-  double least = reach / grid.resolution();
+/// The distance to the nearest blocked cell if it is less than `reach`. Both in cells: a length that went to metres and
+/// back is another number than before.
+std::optional<double> nearest(const Grid& grid, std::span<const Eigen::Vector2d> points, double reach) {
+  double least = reach;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector2d& next = points[std::min(i + 1, points.size() - 1)];
     least = nearest_along(grid, {points[i] / grid.resolution(), next / grid.resolution()}, least);
   }
-  return least * grid.resolution();
+  return least < reach ? std::optional(least) : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<double> clearance(const Grid& grid, std::span<const Eigen::Vector2d> points, double reach) {
+  const std::optional<double> cells = nearest(grid, points, reach / grid.resolution());
+  return cells ? std::optional(*cells * grid.resolution()) : std::nullopt;
 }
 
 bool is_clear(const Grid& grid, std::span<const Eigen::Vector2d> points, double radius) {
   // Two millionths of a cell are left for rounding: the search allows one (kTouch).
-  const double needed = std::max(radius - 2e-6 * grid.resolution(), 5e-7 * grid.resolution());
-  return clearance(grid, points, needed) >= needed;
+  return !nearest(grid, points, std::max(radius / grid.resolution() - 2e-6, 5e-7));
 }
 
 }  // namespace concord

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include <Eigen/Core>
@@ -9,9 +10,9 @@
 namespace concord {
 
 /// The validator: the least distance of a polyline (map frame, metres) to any blocked cell, that is to the closed
-/// square of a cell that is not free; 0 if it enters or touches one. Shares no code with the search: plain geometry on
-/// the grid's own cells. Answers `reach` when nothing is nearer than that.
-[[nodiscard]] double clearance(const Grid& grid, std::span<const Eigen::Vector2d> points, double reach);
+/// square of a cell that is not free; 0 if it enters or touches one. Nothing where no cell is nearer than `reach`.
+/// Shares no code with the search: plain geometry on the grid's own cells.
+[[nodiscard]] std::optional<double> clearance(const Grid& grid, std::span<const Eigen::Vector2d> points, double reach);
 
 /// Whether a robot of `radius` metres may follow the polyline: its disc overlaps no blocked cell anywhere on the way,
 /// and the line itself touches none.

@@ -131,14 +131,10 @@ Points shorten(FreeSpace& space, const Points& points) {
   return path;
 }
 
-double least_clearance(const Grid& grid, const Points& points, double radius) {
-  double reach = radius + 4 * grid.resolution();
-  double found = clearance(grid, points, reach);
-  while (found >= reach) {  // ends, because beyond the map all is unknown
-    reach *= 2;
-    found = clearance(grid, points, reach);
+double least_clearance(const Grid& grid, std::span<const Eigen::Vector2d> points, double radius) {
+  for (double reach = radius + 4 * grid.resolution();; reach *= 2) {  // ends, because beyond the map all is unknown
+    if (const std::optional<double> found = clearance(grid, points, reach)) return *found;
   }
-  return found;
 }
 
 /// Scales back to metres, keeps both ends exact, and lets the validator have the last word.
@@ -176,9 +172,9 @@ PlanResult search(const Grid& grid, const End& start, const End& goal, double ra
     p[i] = ends[i]->position / grid.resolution();
     const std::string where = describe(ends[i]->what, ends[i]->position);
     if (!space.sees(p[i], p[i])) {
-      return refusal(ends[i]->clearance, where + " is " + metres(clearance(grid, {&ends[i]->position, 1}, radius)) +
-                                             " from the nearest wall or unobserved cell, the robot needs " +
-                                             metres(radius));
+      return refusal(ends[i]->clearance,
+                     where + " is " + metres(least_clearance(grid, {&ends[i]->position, 1}, radius)) +
+                         " from the nearest wall or unobserved cell, the robot needs " + metres(radius));
     }
   }
   if (space.sees(p[0], p[1])) return finish(grid, {p[0], p[1]}, start, goal, radius);

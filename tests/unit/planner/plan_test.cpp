@@ -113,17 +113,38 @@ void expect_safe(const Grid& grid, const PlanResult& result, double radius) {
   }
 }
 
-TEST(Plan, EveryPathIsSafeAndNoneIsMissed) {
+/// At 0.05 and 0.1 m lengths in metres are no whole numbers of cells, as they are at 1 m: radii come in steps of 1 cm.
+class PlanAt : public testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(Resolutions, PlanAt, testing::Values(0.05, 0.1, 1.0), [](const auto& resolution) {
+  return std::to_string(std::lround(resolution.param * 100)) + "cm";
+});
+
+TEST_P(PlanAt, EveryRadiusHasItsPathAndItsClearanceIsMeasured) {
+  const double r = GetParam();
+  const Grid grid = sketch(std::vector<std::string>(60, std::string(90, '.')), {-20, -10}, r);
+  const Eigen::Vector2d start(5 * r, 20 * r);
+  const Eigen::Vector2d goal(45 * r, 22 * r);
+  for (int cm = 0; 0.01 * cm <= std::min(25 * r, kMaxRadius); ++cm) {
+    const double radius = 0.01 * cm;
+    const PlanResult result = plan(grid, start, goal, radius);
+    ASSERT_EQ(result.reason, Reason::kOk) << cm << " cm: " << result.message;
+    ASSERT_NEAR(result.least_clearance, 25 * r, 1e-9) << cm << " cm";
+  }
+}
+
+TEST_P(PlanAt, EveryPathIsSafeAndNoneIsMissed) {
+  const double r = GetParam();
   int found = 0;
   for (unsigned seed = 0; seed < 300; ++seed) {
     std::mt19937 random(seed);
     const Cell origin{static_cast<std::int32_t>(random() % 128) - 64, static_cast<std::int32_t>(random() % 128) - 64};
     const Grid grid =
-        sketch(test::strewn(random, 50, 40, 0.02 + 0.001 * static_cast<double>(random() % 150), 0.01), origin);
-    const double radius = seed % 3 == 0 ? 0.0 : 0.2 * static_cast<double>(random() % 10);
+        sketch(test::strewn(random, 50, 40, 0.02 + 0.001 * static_cast<double>(random() % 150), 0.01), origin, r);
+    const int widest = static_cast<int>(180 * r);
+    const double radius = seed % 3 == 0 ? 0.0 : 0.01 * static_cast<double>(random() % (widest + 1));
     const auto anywhere = [&] {
-      return Eigen::Vector2d(origin.x + 0.01 * static_cast<double>(random() % 5000),
-                             origin.y + 0.01 * static_cast<double>(random() % 4000));
+      return Eigen::Vector2d((origin.x + 0.01 * static_cast<double>(random() % 5000)) * r,
+                             (origin.y + 0.01 * static_cast<double>(random() % 4000)) * r);
     };
     for (int i = 0; i < 20; ++i) {
       const Eigen::Vector2d start = anywhere();
@@ -134,7 +155,7 @@ TEST(Plan, EveryPathIsSafeAndNoneIsMissed) {
       ASSERT_EQ(result.reason == Reason::kOk, back.reason == Reason::kOk) << "seed " << seed;
       for (const auto& [end, reason] : {std::pair(start, Reason::kStartClearance), {goal, Reason::kGoalClearance}}) {
         if (result.reason != reason || result.message.find("narrow") != std::string::npos) continue;
-        EXPECT_LE(test::nearest_blocked(grid, end.x(), end.y(), radius + 1), radius);
+        EXPECT_LE(test::nearest_blocked(grid, end.x() / r, end.y() / r, radius / r + 1), radius / r + 1e-6);
       }
       if (result.reason != Reason::kOk) continue;
       ++found;
@@ -182,7 +203,8 @@ TEST(Validator, FindsWhatIsWrongWithAPath) {
   EXPECT_FALSE(is_clear(grid, through_door, 0.51));
   EXPECT_TRUE(is_clear(grid, along_wall, 0.09));
   EXPECT_FALSE(is_clear(grid, along_wall, 0.11));
-  EXPECT_NEAR(clearance(grid, along_wall, 2), 0.1, 1e-12);
+  EXPECT_NEAR(clearance(grid, along_wall, 2).value(), 0.1, 1e-12);
+  EXPECT_FALSE(clearance(grid, along_wall, 0.1 - 1e-9));
   EXPECT_EQ(clearance(grid, through_wall, 2), 0.0);
   const std::vector<Eigen::Vector2d> over_a_corner{{4.5, 3.5}, {5.5, 4.5}};
   EXPECT_FALSE(is_clear(grid, over_a_corner, 0.0));

@@ -10,9 +10,8 @@
 
 namespace concord::test {
 
-/// A map one voxel high and its grid, cells of 1 m: '#' occupied, '.' free, anything else unknown. Row 0 is y =
-/// `origin.y`.
-inline Grid sketch(const std::vector<std::string>& rows, Cell origin = {}) {
+/// A map one voxel high and its grid: '#' occupied, '.' free, anything else unknown. Row 0 is y = `origin.y`.
+inline Grid sketch(const std::vector<std::string>& rows, Cell origin = {}, double resolution = 1.0) {
   BrickMap map;
   for (std::size_t y = 0; y < rows.size(); ++y) {
     for (std::size_t x = 0; x < rows[y].size(); ++x) {
@@ -26,7 +25,7 @@ inline Grid sketch(const std::vector<std::string>& rows, Cell origin = {}) {
       map.set(brick_of(voxel), Brick::from_dense(dense));
     }
   }
-  Grid grid(1.0, make_band(0, 1, 1.0).value(), 0.5);
+  Grid grid(resolution, make_band(0, resolution, resolution).value(), 0.5);
   grid.update(map, map.sorted_bricks());
   return grid;
 }
