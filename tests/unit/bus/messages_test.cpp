@@ -193,7 +193,7 @@ TEST(Messages, map_requests_are_checked) {
 }
 
 TEST(Messages, clouds_and_octomaps_are_checked) {
-  CloudMessage cloud{1, 0, "odom", std::nullopt, 0, {{1, 2, 3}}};
+  CloudMessage cloud{1, 7, 0, "odom", std::nullopt, 0, {{1, 2, 3}}};
   EXPECT_TRUE(decode<CloudMessage>(encode(cloud)));
   cloud.points[0].x() = std::numeric_limits<float>::quiet_NaN();
   EXPECT_TRUE(decode<CloudMessage>(encode(cloud)));  // what a sensor sends where it saw nothing
@@ -203,6 +203,9 @@ TEST(Messages, clouds_and_octomaps_are_checked) {
   cloud.sequence = -1;
   expect_refused(decode<CloudMessage>(encode(cloud)), Code::kBadRequest, "");
   cloud.sequence = 0;
+  cloud.boot_id = 0;
+  expect_refused(decode<CloudMessage>(encode(cloud)), Code::kBadRequest, "");
+  cloud.boot_id = 7;
   cloud.points.resize(2'000'001);
   expect_refused(decode<CloudMessage>(encode(cloud)), Code::kTooLarge, "");
   OctomapMessage map{1, "odom", kNaN, true, {1}};

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bus/brick_stream.hpp"
+#include "core/brick_codec.hpp"
 #include "lossy_bus.hpp"
 
 namespace concord::test {
@@ -21,6 +22,20 @@ inline Brick noisy_brick(std::uint64_t seed, std::uint32_t known_percent = 50) {
     value = dice.roll(100) < known_percent ? static_cast<LogOdds>(dice.roll(8000)) : kUnknown;
   }
   return Brick::from_dense(dense);
+}
+
+inline BrickPacket packet(std::int64_t boot_id, std::int64_t first, std::int64_t last) {
+  return {0, boot_id, "frame", kResolution, first, last, 0, {}};
+}
+
+/// A packet that holds one brick, as a sender would write it.
+inline BrickPacket packet_with(std::int64_t boot_id, std::int64_t version, BrickIndex index, const Brick& brick) {
+  BrickPacket out = packet(boot_id, version, version);
+  out.count = 1;
+  append_varint(out.data, 0);
+  for (const std::int32_t c : {index.x, index.y, index.z}) append_varint(out.data, zigzag(c));
+  append_brick(out.data, brick);
+  return out;
 }
 
 /// A copy of a stream, as any consumer keeps it.
@@ -102,11 +117,12 @@ class StreamWorld {
   }
   /// The owner dies and starts again with what is in map().
   void restart_sender() {
-    const std::int64_t boot_id = air_.now();
+    run(1'000);  // a start takes time, so that boot ids differ
+    boot_id_ = air_.now();
     earlier_bytes_ += sender_bus_ != nullptr ? sender_bus_->bytes_sent() : 0;
     sender_.reset();
     sender_bus_ = std::make_unique<LossyBus>(air_, link_, ++seed_);
-    const BrickSender::Config config{kStream, kResolution, pace_, boot_id};
+    const BrickSender::Config config{kStream, kResolution, pace_, boot_id_};
     sender_ = std::make_unique<BrickSender>(*sender_bus_, sender_counters_, config, map_);
     if (!frame_.empty()) sender_->begin(frame_);
   }
@@ -140,6 +156,7 @@ class StreamWorld {
     return air_.now() - begin;
   }
 
+  [[nodiscard]] std::int64_t boot_id() const { return boot_id_; }
   [[nodiscard]] LockstepBus& air() { return air_; }
   [[nodiscard]] const BrickMap& map() const { return map_; }
   [[nodiscard]] BrickSender& sender() { return *sender_; }
@@ -154,6 +171,7 @@ class StreamWorld {
   Counters sender_counters_;
   BrickMap map_;
   std::string frame_;
+  std::int64_t boot_id_ = 0;
   std::size_t earlier_bytes_ = 0;
   std::unique_ptr<LossyBus> sender_bus_;
   std::unique_ptr<BrickSender> sender_;
