@@ -1,43 +1,45 @@
 #pragma once
 
+#include <cstdint>
 #include <deque>
 #include <map>
 #include <string>
-#include <utility>
 
 #include "bus/messages.hpp"
 
 namespace concord {
 
-/// The latest answers a process gave: a request that comes again (its answer was lost) is answered alike, not done
-/// again.
+/// What was granted lately: a request that comes again (its answer was lost) is answered alike, not done again.
+/// What was refused is not kept: asked again, it may be possible.
 class RecentAnswers {
  public:
   static constexpr std::size_t kKept = 1000;
 
   explicit RecentAnswers(Bus& bus) : bus_(bus) {}
 
-  /// Whether this request was answered before; then that answer was given once more.
-  [[nodiscard]] bool repeat(const std::string& id) const {
-    const auto it = by_id_.find(id);
-    if (it == by_id_.end()) return false;
-    answer(bus_, it->second);
-    return true;
-  }
+  /// Whether nothing more needs to be done: this request was granted before, and that answer was given once more; or
+  /// its id belongs to another request, and it was refused (EXISTS). `content` tells requests of one id apart.
+  [[nodiscard]] bool repeat(const std::string& id, const std::string& process, std::uint64_t content) const;
 
-  void give(Answer value) {
-    answer(bus_, value);
-    if (!by_id_.contains(value.id)) order_.push_back(value.id);
-    by_id_[value.id] = std::move(value);
-    if (order_.size() <= kKept) return;
-    by_id_.erase(order_.front());
-    order_.pop_front();
-  }
+  void give(const Answer& value, std::uint64_t content);
 
  private:
+  struct Given {
+    Answer answer;
+    std::uint64_t content;
+  };
+
   Bus& bus_;
-  std::map<std::string, Answer> by_id_;
+  std::map<std::string, Given> by_id_;
   std::deque<std::string> order_;  ///< oldest first
 };
+
+/// Of a request on the wire, its time left out: its kind and all that it asks.
+[[nodiscard]] std::uint64_t content_of(const Bytes& message);
+
+template <class Request>
+[[nodiscard]] std::uint64_t content_of(const Request& request) {
+  return content_of(encode(request, 0));
+}
 
 }  // namespace concord

@@ -53,9 +53,9 @@ class Section {
     what << name_ << "." << key << " must lie between " << low << " and " << high;
     fail(take(key), what.str());
   }
-  /// A text that `ok` accepts.
-  template <class Ok>
-  void read(const char* key, std::string& value, Ok ok, const std::string& must) {
+  /// A value that `ok` accepts.
+  template <class T, class Ok>
+  void read(const char* key, T& value, Ok ok, const std::string& must) {
     read(key, value);
     if (!ok(value)) fail(take(key), name_ + "." + key + " must be " + must);
   }
@@ -155,7 +155,9 @@ Site read_site(const YAML::Node& root, const std::filesystem::path& directory) {
   Section planner(top.take("planner"), "planner");
   planner.read("zmin", site.planner.zmin, -1000.0, 1000.0);
   planner.read("zmax", site.planner.zmax, -1000.0, 1000.0);
-  planner.read("free_share", site.planner.free_share, 0.0, 1.0);
+  planner.read(
+      "free_share", site.planner.free_share, [](double share) { return share > 0 && share <= 1; },
+      "above 0, at most 1");
   planner.done();
   if (site.planner.zmin >= site.planner.zmax) throw ConfigError("planner.zmin must be below planner.zmax");
 

@@ -5,7 +5,7 @@
 
 namespace concord {
 
-/// Why something from outside was refused. The names travel in `result_t::code` and in status counters.
+/// Why something from outside was refused. The names travel in `answer_t::code` and in status counters.
 enum class Code {
   kMalformed,     ///< bytes that are not what they claim to be
   kTooLarge,      ///< over a stated limit
@@ -22,6 +22,7 @@ enum class Code {
   kNoMap,
   kNotFound,
   kExists,
+  kBusy,  ///< not now; ask again
   kIo,
 };
 

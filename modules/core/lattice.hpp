@@ -33,8 +33,8 @@ inline constexpr int kTileSide = 4;  // bricks
 inline constexpr int kTileBricks = 64;
 inline constexpr int kTileVoxelSide = kTileSide * kBrickSide;
 
-/// Voxel indices beyond this are refused at every border, so that no sum of two overflows.
-inline constexpr std::int32_t kMaxVoxel = 1 << 20;
+/// Voxel indices beyond this are refused at every border: what OctoMap can address, so that any map can be saved.
+inline constexpr std::int32_t kMaxVoxel = 1 << 15;
 
 [[nodiscard]] constexpr bool in_bounds(VoxelIndex v) {
   const auto ok = [](std::int32_t c) { return c >= -kMaxVoxel && c < kMaxVoxel; };

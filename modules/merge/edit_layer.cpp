@@ -5,19 +5,24 @@
 namespace concord {
 
 void EditLayer::apply(const EditRequest& edit, BrickSet& touched) {
-  assert(!revisions_.contains(edit.id));
+  assert(find(edit.id) == nullptr);
   const PinMap::Pin pin = edit.op == EditRequest::Op::kAdd ? PinMap::Pin::kAdded : PinMap::Pin::kDeleted;
   for (const VoxelIndex voxel : edit.voxels) {
     pins_.set(voxel, pin);
     touched.insert(brick_of(voxel));
   }
-  revisions_[edit.id] = ++revision_;
+  applied_[edit.id] = {++revision_, content(edit)};
 }
 
-std::optional<std::int64_t> EditLayer::revision_of(const std::string& edit_id) const {
-  const auto it = revisions_.find(edit_id);
-  if (it == revisions_.end()) return std::nullopt;
-  return it->second;
+const EditLayer::Applied* EditLayer::find(const std::string& edit_id) const {
+  const auto it = applied_.find(edit_id);
+  return it != applied_.end() ? &it->second : nullptr;
+}
+
+std::uint64_t EditLayer::content(const EditRequest& edit) {
+  std::uint64_t hash = static_cast<std::uint64_t>(edit.op);
+  for (const VoxelIndex voxel : edit.voxels) hash = (hash ^ IndexHash{}(voxel)) * 0x9E3779B97F4A7C15ULL;
+  return hash;
 }
 
 }  // namespace concord

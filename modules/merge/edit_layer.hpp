@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,18 +15,24 @@ namespace concord {
 /// every sensor and outlive every re-alignment, because they are kept apart from the agents' layers.
 class EditLayer {
  public:
-  /// Pins the edit's voxels and adds their bricks to `touched`. @pre revision_of(edit.id) is empty.
+  /// Pins the edit's voxels and adds their bricks to `touched`. @pre find(edit.id) is null.
   void apply(const EditRequest& edit, BrickSet& touched);
 
-  /// The revision that an edit led to; empty if it was never applied.
-  [[nodiscard]] std::optional<std::int64_t> revision_of(const std::string& edit_id) const;
+  struct Applied {
+    std::int64_t revision = 0;  ///< that it led to
+    std::uint64_t content = 0;  ///< see content()
+  };
+  /// Null if no edit of this id was applied.
+  [[nodiscard]] const Applied* find(const std::string& edit_id) const;
+  /// Of what the edit pins: tells edits of one id apart.
+  [[nodiscard]] static std::uint64_t content(const EditRequest& edit);
   /// Counts up by one with each edit, from 0.
   [[nodiscard]] std::int64_t revision() const { return revision_; }
   [[nodiscard]] const PinMap& pins() const { return pins_; }
 
  private:
   PinMap pins_;
-  std::map<std::string, std::int64_t> revisions_;
+  std::map<std::string, Applied> applied_;
   std::int64_t revision_ = 0;
 };
 

@@ -1,5 +1,6 @@
 #include "merge/layered_map.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <utility>
 
@@ -46,23 +47,47 @@ void LayeredMap::remove_layer(const std::string& agent) {
 /// All that the layer contributes to, where it lies now.
 void LayeredMap::mark(const AgentLayer& layer) {
   if (!layer.lattice) return;
-  for (const TileIndex tile : layer.map.sorted_tiles()) layer.lattice->touch(tile, dirty_);
+  layer.map.for_each_brick([&](BrickIndex index, const Brick&) { layer.lattice->touch(index, dirty_); });
+}
+
+bool LayeredMap::fits(const std::string& agent, const Transform& T_map_agent) const {
+  const AgentLayer* layer = find(agent);
+  if (layer == nullptr) return true;
+  const LatticeTransform lattice(T_map_agent, resolution_);
+  constexpr double kTileRadius = kTileVoxelSide;  // more than half a tile's diagonal
+  const auto inside = [&](TileIndex tile) {
+    const VoxelIndex corner = origin_of(origin_of(tile));
+    const Eigen::Vector3d middle = Eigen::Vector3d(corner.x, corner.y, corner.z).array() + kTileVoxelSide / 2.0;
+    return lattice.to_map(middle).cwiseAbs().maxCoeff() + kTileRadius < kMaxVoxel;
+  };
+  return std::ranges::all_of(layer->map.sorted_tiles(), inside);
 }
 
 LayeredMap::Changes LayeredMap::refold() {
   Changes changes;
-  if (dirty_.empty()) return changes;
+  // In parts: what a large re-alignment folds to must not stand in memory all at once.
+  constexpr std::size_t kTilesAtOnce = 256;
+  const std::vector<BrickSet::Entry> tiles = std::exchange(dirty_, {}).sorted();
+  for (std::size_t i = 0; i < tiles.size(); i += kTilesAtOnce) {
+    BrickSet part;
+    for (std::size_t k = i; k < std::min(i + kTilesAtOnce, tiles.size()); ++k)
+      part.insert(tiles[k].tile, tiles[k].bricks);
+    fold_into(part, changes);
+  }
+  return changes;
+}
+
+void LayeredMap::fold_into(const BrickSet& dirty, Changes& changes) {
   std::vector<Layer> aligned;
   for (const auto& [agent, layer] : layers_) {
     if (layer.T_map_agent) aligned.push_back({&layer.map, *layer.T_map_agent, layer.weight});
   }
-  for (FoldedBrick& folded : fold(aligned, edits_.pins(), policy_, resolution_, std::exchange(dirty_, {}))) {
+  for (FoldedBrick& folded : fold(aligned, edits_.pins(), policy_, resolution_, dirty)) {
     if (merged_.values.set(folded.index, std::move(folded.values))) changes.map.push_back(folded.index);
     if (merged_.conflicts.set(folded.index, Brick::uniform(folded.conflicts, kOccupied))) {
       changes.conflicts.push_back(folded.index);
     }
   }
-  return changes;
 }
 
 const LayeredMap::AgentLayer* LayeredMap::find(const std::string& agent) const {

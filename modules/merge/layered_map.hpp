@@ -27,6 +27,8 @@ class LayeredMap {
   void set_brick(const std::string& agent, BrickIndex index, Brick brick);
   /// Puts the layer into the map, or moves it. @pre begin_layer was called for the agent.
   void place(const std::string& agent, const Transform& T_map_agent);
+  /// Whether all of the layer would lie within the map's bounds there.
+  [[nodiscard]] bool fits(const std::string& agent, const Transform& T_map_agent) const;
   void remove_layer(const std::string& agent);
 
   /// @pre not applied yet, see EditLayer.
@@ -58,6 +60,7 @@ class LayeredMap {
 
  private:
   void mark(const AgentLayer& layer);
+  void fold_into(const BrickSet& dirty, Changes& changes);
 
   double resolution_;
   Policy policy_;

@@ -27,23 +27,32 @@ class MergeNode {
  private:
   struct Agent {
     std::unique_ptr<BrickReceiver> stream;  ///< null for an agent that only sends poses
-    std::string frame_id;
-    std::map<std::string, Transform> T_map_frame;  ///< by frame_id: all that people have set
+    std::string frame_id;                   ///< empty: not there, though people may have placed it
+    std::int64_t incarnation = 0;           ///< of the stream
+    std::map<std::pair<std::string, std::int64_t>, Transform> placed;  ///< by frame and incarnation: as people set it
     std::optional<AgentPose> pose;
+    std::int64_t pose_heard = 0;
+
+    [[nodiscard]] const Transform* T_map_agent() const {
+      const auto it = placed.find({frame_id, incarnation});
+      return it != placed.end() && !frame_id.empty() ? &it->second : nullptr;
+    }
   };
 
   void restore();
   void listen_to_agents();
   void listen_to_people();
 
-  Agent* agent_of_channel(const std::string& channel);
+  Agent* agent_called(const std::string& id, const std::string& channel);
+  BrickReceiver* stream_of_channel(const std::string& channel);
   void open_stream(const std::string& id, Agent& agent);
   void enter_frame(const std::string& id, Agent& agent, const std::string& frame_id);
-  void forget(const std::string& id);
+  void leave(const std::string& id);
 
   void on_pose(const std::string& channel, AgentPose pose);
   void on_transform(const TransformRequest& request);
   void on_edit(const EditRequest& request);
+  void refuse_edit(const std::string& channel, const BadMessage& bad);
   void on_map_request(const MapRequest& request);
   void save(const MapRequest& request);
   void list(const MapRequest& request);
@@ -54,7 +63,8 @@ class MergeNode {
   void publish_agents();
   void publish_pose(const std::string& id, const Agent& agent);
 
-  void grant(const std::string& id, std::int64_t revision, std::int64_t count, const std::string& message);
+  [[nodiscard]] Answer granted(const std::string& id, std::int64_t revision, std::int64_t count,
+                               const std::string& message) const;
   void deny(const std::string& id, const Error& error);
 
   NodeContext context_;
@@ -65,8 +75,8 @@ class MergeNode {
   BrickSender conflict_stream_;
   RecentAnswers answers_;
   std::map<std::string, Agent> agents_;
-  std::set<std::string> awaited_;  ///< aligned before this start, not yet heard in full
-  std::int64_t started_;
+  std::set<std::string> awaited_;  ///< had a layer in the map before this start
+  std::int64_t last_arrival_;      ///< of a brick, while the map is held back
   bool streaming_ = false;
 };
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "core/byte_stream.hpp"
@@ -12,10 +13,11 @@ namespace {
 
 constexpr const char* kMigrations[] = {
     "CREATE TABLE site (resolution REAL NOT NULL);"
-    "CREATE TABLE transforms (agent TEXT NOT NULL, frame_id TEXT NOT NULL, author TEXT NOT NULL, utime INTEGER NOT "
-    "NULL,"
+    "CREATE TABLE transforms (agent TEXT NOT NULL, frame_id TEXT NOT NULL, incarnation INTEGER NOT NULL,"
+    "  has_layer INTEGER NOT NULL, author TEXT NOT NULL, utime INTEGER NOT NULL,"
     "  x REAL NOT NULL, y REAL NOT NULL, z REAL NOT NULL,"
-    "  qx REAL NOT NULL, qy REAL NOT NULL, qz REAL NOT NULL, qw REAL NOT NULL, PRIMARY KEY (agent, frame_id));"
+    "  qx REAL NOT NULL, qy REAL NOT NULL, qz REAL NOT NULL, qw REAL NOT NULL,"
+    "  PRIMARY KEY (agent, frame_id, incarnation));"
     "CREATE TABLE edits (revision INTEGER PRIMARY KEY AUTOINCREMENT, edit_id TEXT NOT NULL UNIQUE, author TEXT NOT "
     "NULL,"
     "  utime INTEGER NOT NULL, op INTEGER NOT NULL, boxes BLOB NOT NULL);",
@@ -51,8 +53,7 @@ Result<std::vector<VoxelIndex>> voxels_of(ByteSpan bytes) {
 
 MergeStore::MergeStore(const std::filesystem::path& file, double resolution)
     : database_(file, kMigrations),
-      put_transform_(database_.prepare("INSERT OR REPLACE INTO transforms VALUES (?,?,?,?,?,?,?,?,?,?,?)")),
-      forget_agent_(database_.prepare("DELETE FROM transforms WHERE agent = ?")),
+      put_transform_(database_.prepare("INSERT OR REPLACE INTO transforms VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?)")),
       put_edit_(database_.prepare("INSERT INTO edits (edit_id, author, utime, op, boxes) VALUES (?,?,?,?,?)")) {
   check_resolution(resolution);
 }
@@ -71,14 +72,12 @@ void MergeStore::check_resolution(double resolution) {
   }
 }
 
-Result<void> MergeStore::put_transform(const TransformRequest& request, std::int64_t utime) {
-  const Eigen::Vector3d p = request.T_map_agent.translation();
-  const Eigen::Quaterniond q(request.T_map_agent.linear());
-  return put_transform_.run(request.agent, request.frame_id, request.author, utime, p.x(), p.y(), p.z(), q.x(), q.y(),
-                            q.z(), q.w());
+Result<void> MergeStore::put_transform(const Placed& placed, const std::string& author, std::int64_t utime) {
+  const Eigen::Vector3d p = placed.T_map_agent.translation();
+  const Eigen::Quaterniond q(placed.T_map_agent.linear());
+  return put_transform_.run(placed.agent, placed.frame_id, placed.incarnation, placed.has_layer, author, utime, p.x(),
+                            p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
 }
-
-Result<void> MergeStore::forget_agent(const std::string& agent) { return forget_agent_.run(agent); }
 
 Result<void> MergeStore::put_edit(const EditRequest& edit) {
   const Bytes boxes = to_bytes(to_boxes(edit.voxels));
@@ -88,31 +87,34 @@ Result<void> MergeStore::put_edit(const EditRequest& edit) {
 
 Result<std::vector<MergeStore::Placed>> MergeStore::transforms() {
   std::vector<Placed> out;
-  Statement read =
-      database_.prepare("SELECT agent, frame_id, x, y, z, qx, qy, qz, qw FROM transforms ORDER BY agent, frame_id");
-  while (true) {
-    const Result<bool> row = read.step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return out;
-    const auto T = make_transform({read.real(2), read.real(3), read.real(4)},
-                                  {read.real(5), read.real(6), read.real(7), read.real(8)});
-    if (!T) return tl::unexpected(T.error());
-    out.push_back({read.text(0), read.text(1), *T});
-  }
+  std::optional<Error> broken;
+  Statement read = database_.prepare(
+      "SELECT agent, frame_id, incarnation, has_layer, x, y, z, qx, qy, qz, qw FROM transforms "
+      "ORDER BY agent, frame_id, incarnation");
+  const auto done = read.for_each_row([&] {
+    const auto T = make_transform({read.real(4), read.real(5), read.real(6)},
+                                  {read.real(7), read.real(8), read.real(9), read.real(10)});
+    if (!T) broken = T.error();
+    if (T) out.push_back({read.text(0), read.text(1), read.integer(2), read.integer(3) != 0, *T});
+  });
+  if (!done) return tl::unexpected(done.error());
+  if (broken) return tl::unexpected(*broken);
+  return out;
 }
 
-Result<std::vector<EditRequest>> MergeStore::edits() {
-  std::vector<EditRequest> out;
+Result<void> MergeStore::for_each_edit(const std::function<void(const EditRequest&)>& visit) {
+  std::optional<Error> broken;
   Statement read = database_.prepare("SELECT edit_id, author, utime, op, boxes FROM edits ORDER BY revision");
-  while (true) {
-    const Result<bool> row = read.step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return out;
+  const auto done = read.for_each_row([&] {
     auto voxels = voxels_of(read.bytes(4));
-    if (!voxels) return tl::unexpected(voxels.error());
+    if (!voxels) broken = voxels.error();
+    if (!voxels) return;
     const auto op = read.integer(3) == kAdd ? EditRequest::Op::kAdd : EditRequest::Op::kDelete;
-    out.push_back({read.text(0), read.text(1), op, std::move(*voxels), read.integer(2)});
-  }
+    visit({read.text(0), read.text(1), op, std::move(*voxels), read.integer(2)});
+  });
+  if (!done) return done;
+  if (broken) return tl::unexpected(*broken);
+  return {};
 }
 
 }  // namespace concord

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -16,25 +17,27 @@ class MergeStore {
   /// @throws std::runtime_error if it cannot be opened or was made for another resolution.
   MergeStore(const std::filesystem::path& file, double resolution);
 
-  [[nodiscard]] Result<void> put_transform(const TransformRequest& request, std::int64_t utime);
-  [[nodiscard]] Result<void> forget_agent(const std::string& agent);
-  [[nodiscard]] Result<void> put_edit(const EditRequest& edit);
-
+  /// Where an agent lies. It holds for one frame of one incarnation (see stream.md): what was removed and comes again
+  /// is not what was placed.
   struct Placed {
     std::string agent;
     std::string frame_id;
-    Transform T_map_agent;
+    std::int64_t incarnation = 0;
+    bool has_layer = false;  ///< false: it had sent poses only
+    Transform T_map_agent = Transform::Identity();
   };
+  [[nodiscard]] Result<void> put_transform(const Placed& placed, const std::string& author, std::int64_t utime);
+  [[nodiscard]] Result<void> put_edit(const EditRequest& edit);
+
   [[nodiscard]] Result<std::vector<Placed>> transforms();
-  /// In the order in which they were put.
-  [[nodiscard]] Result<std::vector<EditRequest>> edits();
+  /// Hands on each edit in the order in which they were put.
+  [[nodiscard]] Result<void> for_each_edit(const std::function<void(const EditRequest&)>& visit);
 
  private:
   void check_resolution(double resolution);
 
   Database database_;
   Statement put_transform_;
-  Statement forget_agent_;
   Statement put_edit_;
 };
 

@@ -1,5 +1,8 @@
 #include "merge/merge_node.hpp"
 
+#include <sys/resource.h>
+
+#include <csignal>
 #include <cstdlib>
 
 #include <gtest/gtest.h>
@@ -40,7 +43,8 @@ class MergeNodeTest : public ::testing::Test {
     bus_->subscribe("out/agents", [this](const std::string&, auto bytes) { agents_ = *decode<AgentList>(bytes); });
     bus_->subscribe("out/map_list", [this](const std::string&, auto bytes) { list_ = *decode<MapList>(bytes); });
     agent_stream_ = std::make_unique<BrickSender>(
-        *bus_, counters_, BrickSender::Config{"out/agent/robot1", site_.resolution, 5e6, time}, agent_map_);
+        *bus_, counters_, BrickSender::Config{"out/agent/robot1", site_.resolution, 5e6, time, incarnation_},
+        agent_map_);
   }
 
   void listen_as_planner() {
@@ -84,6 +88,7 @@ class MergeNodeTest : public ::testing::Test {
   std::unique_ptr<LockstepBus> bus_;
   std::unique_ptr<MergeNode> node_;
   BrickMap agent_map_;
+  std::int64_t incarnation_ = 1;
   std::unique_ptr<BrickSender> agent_stream_;
   std::unique_ptr<BrickReceiver> listener_;
   BrickMap heard_;
@@ -171,16 +176,124 @@ TEST_F(MergeNodeTest, ANewFrameIsUnalignedAndLeavesNoGhost) {
   EXPECT_FALSE(heard_.empty()) << "the transform of frame1 still holds";
 }
 
-TEST_F(MergeNodeTest, ARemovedAgentIsForgotten) {
+TEST_F(MergeNodeTest, ARemovedAgentThatComesAgainIsNotWhereItWas) {
   send_wall();
   ASSERT_TRUE(place("t1", Transform::Identity()).ok);
   agent_stream_->end();
   run();
   EXPECT_TRUE(heard_.empty());
   EXPECT_TRUE(agents_.agents.empty());
+  for (const bool restarted : {false, true}) {
+    ++incarnation_;
+    start();
+    agent_stream_->begin("frame1");
+    run();
+    ASSERT_EQ(agents_.agents.size(), 1u) << restarted;
+    EXPECT_FALSE(agents_.agents[0].aligned) << "its transform was for the one before";
+  }
+}
+
+TEST_F(MergeNodeTest, AnEndThatNobodySaidTakesNothingFromPeople) {
+  send_wall();
+  ASSERT_TRUE(place("t1", Transform::Identity()).ok);
+  bus_->publish("out/agent/robot1/digest", encode(BrickDigest{0, bus_->now() + 5, "", site_.resolution, 0, 0, 0, 1}));
+  run(10'000'000);
+  EXPECT_FALSE(heard_.empty()) << "the agent's stream goes on, and lies where it was put";
+}
+
+TEST_F(MergeNodeTest, AFullTableStillHasRoomForWhoIsInIt) {
+  site_.ingest.max_agents = 1;
+  start();
+  send_wall();
+  ASSERT_TRUE(place("t1", Transform::Identity()).ok);
+  bus_->publish("in/robot9/pose", encode(AgentPose{"", "odom", Transform::Identity(), 5}));
+  run();
+  EXPECT_EQ(agents_.agents.size(), 1u);
+  start();
+  for (int i = 0; i < 70; ++i) {
+    const std::string gone = "out/agent/gone" + std::to_string(i) + "/digest";
+    bus_->publish(gone, encode(BrickDigest{0, bus_->now(), "", site_.resolution, 0, 0, 0, 1}));
+  }
   agent_stream_->begin("frame1");
   run();
-  EXPECT_FALSE(agents_.agents[0].aligned) << "its transform went with it";
+  EXPECT_FALSE(heard_.empty()) << "after a restart the map is still there";
+}
+
+TEST_F(MergeNodeTest, AMapThatIsNotWholeYetIsNotSaved) {
+  send_wall();
+  ASSERT_TRUE(place("t1", Transform::Identity()).ok);
+  start();
+  const MapRequest save{"s1", MapRequest::Op::kSave, "hall", "bt", true, ""};
+  EXPECT_EQ(ask("in/map_request", encode(save, bus_->now())).code, "BUSY");
+  agent_stream_->begin("frame1");
+  run();
+  EXPECT_TRUE(ask("in/map_request", encode(save, bus_->now())).ok) << "a refusal is not kept";
+}
+
+TEST_F(MergeNodeTest, AnIdBelongsToOneRequest) {
+  send_wall();
+  ASSERT_TRUE(place("one", Transform::Identity()).ok);
+  ASSERT_TRUE(place("one", Transform::Identity()).ok);
+  Transform other = Transform::Identity();
+  other.translation().x() = 1;
+  EXPECT_EQ(place("one", other).code, "EXISTS");
+  const MapRequest save{"one", MapRequest::Op::kSave, "hall", "bt", false, ""};
+  EXPECT_EQ(ask("in/map_request", encode(save, bus_->now())).code, "EXISTS");
+  ASSERT_TRUE(add("e1", {0, 0, 0}).ok);
+  EXPECT_EQ(add("e1", {0, 0, 1}).code, "EXISTS");
+}
+
+TEST_F(MergeNodeTest, APlaceBeyondTheMapIsRefused) {
+  send_wall();
+  Transform far = Transform::Identity();
+  far.translation().x() = 5000;
+  EXPECT_EQ(place("t1", far).code, "OUT_OF_BOUNDS");
+}
+
+TEST_F(MergeNodeTest, ARobotWhoseClockWentBackIsHeardAfterASilence) {
+  const auto say = [&](std::int64_t utime) {
+    bus_->publish("in/robot2/pose", encode(AgentPose{"", "odom", Transform::Identity(), utime}));
+    bus_->deliver();
+  };
+  say(1'000'000);
+  ASSERT_TRUE(
+      ask("in/transform", encode(TransformRequest{"t1", "eva", "robot2", "", Transform::Identity()}, bus_->now())).ok);
+  poses_.clear();
+  say(5);
+  EXPECT_TRUE(poses_.empty());
+  run(4'000'000);
+  say(10);
+  EXPECT_EQ(poses_.size(), 1u);
+}
+
+/// Files cannot grow beyond `bytes` while this lives, as on a full disk.
+class FullDisk {
+ public:
+  explicit FullDisk(std::uintmax_t bytes) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FullDisk() { ::setrlimit(RLIMIT_FSIZE, &before_); }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST_F(MergeNodeTest, WhatCannotBeStoredIsRefusedAndNotDone) {
+  send_wall();
+  {
+    const FullDisk full(std::filesystem::file_size(site_.state / "merge.db-wal"));
+    EXPECT_EQ(place("t1", Transform::Identity()).code, "IO");
+    EXPECT_EQ(add("e1", {0, 0, 0}).code, "IO");
+  }
+  run();
+  EXPECT_TRUE(heard_.empty());
+  EXPECT_TRUE(place("t1", Transform::Identity()).ok) << "and serves on";
+  EXPECT_TRUE(add("e1", {0, 0, 0}).ok);
 }
 
 TEST_F(MergeNodeTest, ARobotThatSendsOnlyPosesIsAnAgent) {

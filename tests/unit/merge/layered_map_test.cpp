@@ -127,8 +127,8 @@ TEST(EditLayer, LatestEditWinsInItsVoxels) {
   edits.apply({"two", "eva", EditRequest::Op::kDelete, {{0, 0, 1}}, 0}, touched);
   EXPECT_EQ(edits.pins().at({0, 0, 0}), PinMap::Pin::kAdded);
   EXPECT_EQ(edits.pins().at({0, 0, 1}), PinMap::Pin::kDeleted);
-  EXPECT_EQ(edits.revision_of("two"), 2);
-  EXPECT_FALSE(edits.revision_of("three"));
+  EXPECT_EQ(edits.find("two")->revision, 2);
+  EXPECT_EQ(edits.find("three"), nullptr);
   EXPECT_TRUE(touched.contains(BrickIndex{0, 0, 0}));
 }
 

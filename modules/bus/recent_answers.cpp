@@ -1,0 +1,30 @@
+#include "bus/recent_answers.hpp"
+
+#include <xxhash.h>
+
+namespace concord {
+
+bool RecentAnswers::repeat(const std::string& id, const std::string& process, std::uint64_t content) const {
+  const auto it = by_id_.find(id);
+  if (it == by_id_.end()) return false;
+  if (it->second.content == content) {
+    answer(bus_, it->second.answer);
+  } else {
+    answer(bus_, {id, process, false, name(Code::kExists), "another request had this id; ids must be unique", 0, 0});
+  }
+  return true;
+}
+
+void RecentAnswers::give(const Answer& value, std::uint64_t content) {
+  answer(bus_, value);
+  if (!value.ok) return;
+  if (!by_id_.contains(value.id)) order_.push_back(value.id);
+  by_id_[value.id] = {value, content};
+  if (order_.size() <= kKept) return;
+  by_id_.erase(order_.front());
+  order_.pop_front();
+}
+
+std::uint64_t content_of(const Bytes& message) { return XXH3_64bits(message.data(), message.size()); }
+
+}  // namespace concord
