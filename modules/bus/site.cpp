@@ -211,6 +211,7 @@ std::string to_yaml(const Site& site) {
   root["planner"]["zmax"] = site.planner.zmax;
   root["planner"]["free_share"] = site.planner.free_share;
   YAML::Emitter out;
+  out.SetDoublePrecision(10);
   out << root;
   return out.c_str();
 }

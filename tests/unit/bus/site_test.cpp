@@ -104,6 +104,9 @@ TEST_F(SiteFile, wrong_types_and_ranges_are_errors_with_their_line) {
   EXPECT_EQ(refusal("merge: mean\n"), "line 1: merge must hold keys and values");
   EXPECT_EQ(refusal("merge: {policy: best}\n"), "line 1: merge.policy must be mean or table");
   EXPECT_EQ(refusal("planner: {zmin: 2.0}\n"), "planner.zmin must be below planner.zmax");
+  EXPECT_EQ(refusal("planner: {free_share: 0}\n"), "line 1: planner.free_share must be above 0, at most 1");
+  EXPECT_EQ(refusal("planner: {free_share: .nan}\n"), "line 1: planner.free_share must be above 0, at most 1");
+  EXPECT_EQ(refusal("planner: {free_share: 1}\n"), "accepted");
   EXPECT_NE(refusal("- a\n- b\n"), "accepted");
   EXPECT_NE(refusal("a: [\n"), "accepted");
   EXPECT_NE(refusal("? [a, b]\n: c\n"), "accepted");
