@@ -35,6 +35,9 @@ class FreeSpace {
   /// touch a blocked cell's corner.
   [[nodiscard]] bool sees(const Eigen::Vector2d& from, const Eigen::Vector2d& to);
 
+  /// No blocked cell further away than so many rows or columns matters to a cell's being open.
+  [[nodiscard]] int reach() const { return reach_; }
+
   [[nodiscard]] static Cell tile_of(Cell cell) { return {cell.x >> 6, cell.y >> 6}; }
 
  private:

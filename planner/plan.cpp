@@ -163,6 +163,12 @@ PlanResult no_path(const CellPath& path) {
   return refusal(Reason::kNoValidPath, "no way through: walls, or space not yet observed, cut the goal off");
 }
 
+/// A straight line counts as tried, too; it may be free where no cell's centre is near.
+void add_line(Region& region, const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
+  const int steps = static_cast<int>((to - from).norm() / 4) + 1;
+  for (int i = 0; i <= steps; ++i) region.add(cell_of(from + (to - from) * i / steps));
+}
+
 PlanResult search(const Grid& grid, const End& start, const End& goal, double radius) {
   FreeSpace space(grid, radius / grid.resolution());
   const std::array<const End*, 2> ends{&start, &goal};
@@ -189,6 +195,8 @@ PlanResult search(const Grid& grid, const End& start, const End& goal, double ra
   PlanResult result;
   if (found.status != CellPath::Status::kFound) {
     result = no_path(found);
+    result.reached = found.reached;
+    add_line(result.reached, p[0], p[1]);
   } else {
     Points points{p[0]};
     for (const Cell cell : found.cells) points.push_back(centre_of(cell));

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "planner/grid.hpp"
+#include "planner/region.hpp"
 
 namespace concord {
 
@@ -46,6 +47,7 @@ struct PlanResult {
   double length = 0.0;                  ///< metres
   double least_clearance = 0.0;         ///< least distance to a blocked cell, metres
   std::int64_t expanded = 0;            ///< cells the search looked at
+  Region reached;                       ///< of a search that failed: it fails again until something there becomes free
 };
 
 /// A path for a round robot of `radius` metres over free cells, at any angle: the cheapest one over the grid's eight

@@ -12,12 +12,14 @@ namespace {
 constexpr std::int64_t kEffort = 1'000'000;
 constexpr std::int64_t kEffortOfAPlan = 10'000;
 
+/// Between two tries of a search that failed, and between two times that a path is said.
+constexpr std::int64_t kSecond = 1'000'000;
+
+/// A clock that was set back makes nothing recent.
+bool is_recent(std::int64_t utime, std::int64_t now) { return utime <= now && now - utime < kSecond; }
+
 bool is_failed_search(const Path& path) {
   return path.status == name(Reason::kNoValidPath) || path.status == name(Reason::kSearchLimit);
-}
-
-bool waits_for_pose(const Path& path) {
-  return path.status == name(Reason::kNoPose) || path.status.starts_with("START_");
 }
 
 Path to_path(const PathRequest& request, const PlanResult& result, double floor, const Planner::Moment& moment) {
@@ -52,7 +54,7 @@ std::vector<BrickIndex> Planner::project() {
   touched_.clear();
   if (changes.empty()) return {};
   for (auto& [robot, active] : active_) {
-    if (must_replan(active, changes)) wait(robot, active);
+    if (must_replan(active, changes)) wait(active);
   }
   std::vector<BrickIndex> columns;
   columns.reserve(changes.size());
@@ -64,8 +66,9 @@ std::vector<BrickIndex> Planner::project() {
 /// its reason, which was found without a search, may have become another.
 bool Planner::must_replan(const Active& active, const std::vector<ColumnChange>& changes) const {
   if (active.points.empty()) {
-    return !is_failed_search(active.path) ||
-           std::any_of(changes.begin(), changes.end(), [](const ColumnChange& change) { return change.freed != 0; });
+    return !is_failed_search(active.path) || std::any_of(changes.begin(), changes.end(), [&](const auto& change) {
+      return change.freed != 0 && active.reached.is_near(change.column);
+    });
   }
   Eigen::Vector2d low = active.points.front();
   Eigen::Vector2d high = low;
@@ -84,34 +87,47 @@ bool Planner::must_replan(const Active& active, const std::vector<ColumnChange>&
 }
 
 bool Planner::set_pose(const std::string& robot, const Eigen::Vector2d& p_map) {
-  const auto it = poses_.find(robot);
-  if (it == poses_.end() && poses_.size() >= kMaxPoses) return false;
-  const bool moved = it == poses_.end() || (it->second - p_map).norm() >= grid_.resolution();
-  if (!moved) return true;
+  if (poses_.size() >= kMaxPoses && !poses_.contains(robot)) return false;
   poses_[robot] = p_map;
   const auto active = active_.find(robot);
-  if (active != active_.end() && !active->second.request.start && waits_for_pose(active->second.path)) {
-    wait(robot, active->second);
-  }
+  if (active != active_.end() && has_moved(active->second, p_map)) wait(active->second);
   return true;
 }
 
-std::optional<Eigen::Vector2d> Planner::start_of(const PathRequest& request) const {
-  if (request.start) return request.start;
-  const auto it = poses_.find(request.robot);
-  return it != poses_.end() ? std::optional(it->second) : std::nullopt;
+void Planner::keep_poses(const std::set<std::string>& aligned) {
+  std::erase_if(poses_, [&](const auto& pose) { return !aligned.contains(pose.first); });
 }
 
-PlanResult Planner::plan_for(const PathRequest& request, double radius) const {
-  const std::optional<Eigen::Vector2d> start = start_of(request);
-  if (start) return plan(grid_, *start, request.goal, radius);
+/// So far that a request which failed from where its robot was may succeed now. A robot that has a path follows it.
+bool Planner::has_moved(const Active& active, const Eigen::Vector2d& p_map) const {
+  if (active.request.start || !active.points.empty()) return false;
+  if (!active.start) return true;
+  const double enough =
+      is_failed_search(active.path) ? std::max(active.radius, grid_.resolution()) : grid_.resolution();
+  return (p_map - *active.start).norm() >= enough;
+}
+
+/// Returns the effort.
+std::int64_t Planner::try_to_plan(Active& active, const Moment& moment) const {
+  const PathRequest& request = active.request;
+  const auto pose = poses_.find(request.robot);
+  active.start = request.start;
+  if (!active.start && pose != poses_.end()) active.start = pose->second;
   PlanResult result;
-  result.reason = Reason::kNoPose;
-  result.message = "nobody has said where " + request.robot + " is in the map: align it, or give a start";
-  return result;
+  if (active.start) {
+    result = plan(grid_, *active.start, request.goal, active.radius);
+  } else {
+    result.reason = Reason::kNoPose;
+    result.message = "nobody has said where " + request.robot + " is in the map: align it, or give a start";
+  }
+  active.path = to_path(request, result, grid_.band().floor, moment);
+  active.points = std::move(result.points);
+  active.reached = std::move(result.reached);
+  active.turn = 0;
+  return kEffortOfAPlan + result.expanded;
 }
 
-Path* Planner::known(const PathRequest& request) {
+const Path* Planner::known(const PathRequest& request) const {
   const auto active = active_.find(request.robot);
   if (active != active_.end() && active->second.request.id == request.id) return &active->second.path;
   const auto it = std::find_if(recent_.begin(), recent_.end(),
@@ -121,52 +137,81 @@ Path* Planner::known(const PathRequest& request) {
 
 void Planner::remember(const Path& path) {
   recent_.push_back(path);
-  recent_.back().active = false;  // it is looked up here when another request has ended it
   if (recent_.size() > kKeptPaths) recent_.pop_front();
 }
 
-Path Planner::request(const PathRequest& request, double radius, const Moment& moment) {
-  if (const Path* path = known(request)) return *path;
-  Active now{request, request.radius > 0 ? request.radius : radius, {}, {}, false};
-  PlanResult result = plan_for(request, now.radius);
-  now.path = to_path(request, result, grid_.band().floor, moment);
-  active_.erase(request.robot);
-  if (request.keep_active && active_.size() >= kMaxActive) {
-    now.path.message += "; it is not kept active, as so many robots' paths are already";
-  } else if (request.keep_active && result.reason != Reason::kBadRequest) {
-    now.path.active = true;
-    now.points = std::move(result.points);
-  }
-  remember(now.path);
-  Path path = now.path;
-  if (path.active) active_.emplace(request.robot, std::move(now));
-  return path;
+std::optional<Path> Planner::end(const std::string& robot) {
+  const auto it = active_.find(robot);
+  if (it == active_.end()) return std::nullopt;
+  Path last = std::move(it->second.path);
+  active_.erase(it);
+  last.active = false;
+  last.message = "ended: another request of the robot's has taken its place";
+  remember(last);
+  return last;
 }
 
-void Planner::wait(const std::string& robot, Active& active) {
-  if (active.is_waiting) return;
-  active.is_waiting = true;
-  waiting_.push_back(robot);
+Planner::Reply Planner::request(const PathRequest& request, double radius, const Moment& moment) {
+  if (const Path* path = known(request)) return {*path, {}};
+  Active now;
+  now.request = request;
+  now.radius = request.radius > 0 ? request.radius : radius;
+  try_to_plan(now, moment);
+  const bool has_room = active_.size() < kMaxActive || active_.contains(request.robot);
+  if (request.keep_active && !has_room) {
+    now.path.message += "; it is not kept active, as so many robots' paths are already";
+  }
+  if (!request.keep_active || !has_room || now.path.status == name(Reason::kBadRequest)) {
+    remember(now.path);
+    return {now.path, {}};
+  }
+  now.path.active = true;
+  now.said = moment.utime;
+  Reply reply{now.path, end(request.robot)};
+  active_.emplace(request.robot, std::move(now));
+  return reply;
+}
+
+void Planner::wait(Active& active) {
+  if (active.turn == 0) active.turn = ++turns_;
+}
+
+std::vector<Planner::Active*> Planner::due(const Moment& moment) {
+  std::vector<Active*> due;
+  for (auto& [robot, active] : active_) {
+    const bool rests = is_failed_search(active.path) && is_recent(active.path.utime, moment.utime);
+    if (active.turn != 0 && !rests) due.push_back(&active);
+  }
+  std::sort(due.begin(), due.end(), [](const Active* a, const Active* b) { return a->turn < b->turn; });
+  return due;
 }
 
 std::vector<Path> Planner::replan(const Moment& moment) {
   std::vector<Path> changed;
-  for (std::int64_t effort = 0; effort < kEffort && !waiting_.empty(); waiting_.pop_front()) {
-    const auto it = active_.find(waiting_.front());
-    if (it == active_.end() || !it->second.is_waiting) continue;  // another request came meanwhile
-    Active& active = it->second;
-    active.is_waiting = false;
-    PlanResult result = plan_for(active.request, active.radius);
-    effort += kEffortOfAPlan + result.expanded;
-    Path path = to_path(active.request, result, grid_.band().floor, moment);
-    path.active = true;
-    const bool is_another = !same_answer(path, active.path);
-    path.plan_number = active.path.plan_number + (is_another ? 1 : 0);
-    active.path = path;
-    active.points = std::move(result.points);
-    if (is_another) changed.push_back(std::move(path));
+  std::int64_t effort = 0;
+  for (Active* active : due(moment)) {
+    if (effort >= kEffort) break;
+    const Path before = std::move(active->path);
+    effort += try_to_plan(*active, moment);
+    const bool is_another = !same_answer(active->path, before);
+    active->path.active = true;
+    active->path.plan_number = before.plan_number + (is_another ? 1 : 0);
+    if (!is_another) continue;
+    active->said = moment.utime;
+    changed.push_back(active->path);
   }
   return changed;
+}
+
+std::vector<Path> Planner::repeat(const Moment& moment) {
+  std::vector<Path> paths;
+  for (auto& [robot, active] : active_) {
+    if (is_recent(active.said, moment.utime)) continue;
+    if (active.turn == 0) active.path.map_revision = moment.map_revision;
+    active.said = moment.utime;
+    paths.push_back(active.path);
+  }
+  return paths;
 }
 
 }  // namespace concord

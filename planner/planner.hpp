@@ -4,6 +4,7 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "core/requests.hpp"
 #include "planner/grid.hpp"
 #include "planner/plan.hpp"
+#include "planner/region.hpp"
 
 namespace concord {
 
@@ -38,14 +40,25 @@ class Planner {
 
   /// Where a robot is, map frame. False if it is one robot too many.
   bool set_pose(const std::string& robot, const Eigen::Vector2d& p_map);
+  /// Only these robots are anywhere in the map: where others were is forgotten.
+  void keep_poses(const std::set<std::string>& aligned);
+
+  struct Reply {
+    Path path;
+    std::optional<Path> ended;  ///< the last word on the path whose place this one takes
+  };
 
   /// Plans on the grid as of the last `project`. A request that comes again (same robot, same id) gets the path it has
-  /// now. The newest request of a robot ends the one before. `radius` holds where the request has none.
-  Path request(const PathRequest& request, double radius, const Moment& moment);
+  /// now. One that is kept active ends the robot's kept one before. `radius` holds where the request has none.
+  Reply request(const PathRequest& request, double radius, const Moment& moment);
 
   /// Plans anew for active paths that are blocked, or may be possible now; the longest waiting first, so many that one
   /// call stays short: call it again and again. Returns those whose result is another than before.
   std::vector<Path> replan(const Moment& moment);
+
+  /// The active paths of which nothing was said for a second. One that still holds is given as of this moment's
+  /// revision; one that waits to be planned anew, as of the revision it was found on.
+  std::vector<Path> repeat(const Moment& moment);
 
   [[nodiscard]] std::size_t active_count() const { return active_.size(); }
 
@@ -55,23 +68,28 @@ class Planner {
     double radius = 0;
     Path path;
     std::vector<Eigen::Vector2d> points;
-    bool is_waiting = false;  ///< stands in waiting_
+    std::optional<Eigen::Vector2d> start;  ///< where it was planned from
+    Region reached;                        ///< by the search, if it failed
+    std::int64_t said = 0;                 ///< when it was last published
+    std::int64_t turn = 0;                 ///< in which it is to be planned anew; 0: it is not
   };
 
-  [[nodiscard]] std::optional<Eigen::Vector2d> start_of(const PathRequest& request) const;
-  [[nodiscard]] PlanResult plan_for(const PathRequest& request, double radius) const;
+  std::int64_t try_to_plan(Active& active, const Moment& moment) const;
   [[nodiscard]] bool must_replan(const Active& active, const std::vector<ColumnChange>& changes) const;
-  [[nodiscard]] Path* known(const PathRequest& request);
+  [[nodiscard]] bool has_moved(const Active& active, const Eigen::Vector2d& p_map) const;
+  [[nodiscard]] std::vector<Active*> due(const Moment& moment);
+  [[nodiscard]] const Path* known(const PathRequest& request) const;
+  std::optional<Path> end(const std::string& robot);
   void remember(const Path& path);
-  void wait(const std::string& robot, Active& active);
+  void wait(Active& active);
 
   BrickMap map_;
   std::vector<BrickIndex> touched_;
   Grid grid_;
   std::map<std::string, Eigen::Vector2d> poses_;
   std::map<std::string, Active> active_;  ///< by robot
-  std::deque<std::string> waiting_;       ///< robots to be replanned; some may have gone
-  std::deque<Path> recent_;               ///< oldest first
+  std::int64_t turns_ = 0;                ///< given out so far
+  std::deque<Path> recent_;               ///< answers that are not kept active, oldest first
 };
 
 }  // namespace concord

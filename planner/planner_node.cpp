@@ -1,5 +1,8 @@
 #include "planner/planner_node.hpp"
 
+#include <set>
+#include <string>
+
 namespace concord {
 namespace {
 
@@ -38,11 +41,18 @@ PlannerNode::PlannerNode(const NodeContext& context)
       context_.counters.refused(channel, {Code::kTooLarge, "poses of more robots than are kept"});
     }
   });
+  listen<AgentList>(bus, counters, self, "out/agents", [this](const std::string&, const AgentList& list) {
+    std::set<std::string> aligned;
+    for (const AgentState& agent : list.agents) {
+      if (agent.aligned) aligned.insert(agent.id);
+    }
+    planner_.keep_poses(aligned);
+  });
   listen<PathRequest>(bus, counters, self, "in/path_request",
                       [this](const std::string&, const PathRequest& request) { on_request(request); });
   bus.every(kTick, [this] {
     project();
-    replan();
+    speak();
   });
 }
 
@@ -57,25 +67,29 @@ void PlannerNode::project() {
   for (const BrickIndex column : planner_.project()) sender_.touch(column);
 }
 
-void PlannerNode::replan() {
-  for (const Path& path : planner_.replan(moment())) publish(path);
+/// What changed, and once a second what did not: the bus may lose a path, and silence means that none is kept.
+void PlannerNode::speak() {
+  for (const Path& path : planner_.replan(moment())) {
+    context_.counters.add("paths." + path.status);
+    publish(path);
+  }
+  for (const Path& path : planner_.repeat(moment())) publish(path);
   context_.counters.set("active_paths", static_cast<std::int64_t>(planner_.active_count()));
 }
 
 void PlannerNode::on_request(const PathRequest& request) {
   project();
-  Path path = planner_.request(request, context_.site.agent(request.robot).radius, moment());
+  auto [path, ended] = planner_.request(request, context_.site.agent(request.robot).radius, moment());
   const bool ok = path.status == name(Reason::kOk);
   if (!ok && !receiver_.synced()) path.message += "; the map has not fully arrived yet";
+  context_.counters.add("paths." + path.status);
+  if (ended) publish(*ended);
   publish(path);
   answer(context_.bus, {path.id, context_.process, ok, path.status, path.message, path.map_revision,
                         static_cast<std::int64_t>(path.points.size())});
 }
 
-void PlannerNode::publish(const Path& path) {
-  context_.counters.add("paths." + path.status);
-  context_.bus.publish("out/path/" + path.robot, encode(path));
-}
+void PlannerNode::publish(const Path& path) { context_.bus.publish("out/path/" + path.robot, encode(path)); }
 
 Planner::Moment PlannerNode::moment() const { return {receiver_.revision(), context_.bus.now()}; }
 

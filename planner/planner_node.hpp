@@ -21,7 +21,7 @@ class PlannerNode {
   void on_frame(const std::string& frame_id);
   void on_request(const PathRequest& request);
   void project();
-  void replan();
+  void speak();
   void publish(const Path& path);
   [[nodiscard]] Planner::Moment moment() const;
 

@@ -62,11 +62,12 @@ class AStar {
       closed |= bit;
       if (path.expanded == max_expanded) {
         path.status = CellPath::Status::kGaveUp;
-        return path;
+        break;
       }
       ++path.expanded;
       expand(block, top.cell);
     }
+    path.reached = reached();
     return path;
   }
 
@@ -152,6 +153,22 @@ class AStar {
     }
     std::reverse(cells.begin(), cells.end());
     return cells;
+  }
+
+  /// The cells that were expanded. Beside them the search looked at their neighbours and at the straight lines from a
+  /// start or goal near by.
+  [[nodiscard]] Region reached() const {
+    Region region(space_.reach() + 4);
+    for (const auto& [tile, block] : blocks_) {
+      std::uint64_t columns = 0;
+      for (int y = 0; y < FreeSpace::kSide; ++y) {
+        for (int x = 0; x < 8; ++x) {
+          if ((block->closed[y] >> (8 * x) & 0xFF) != 0) columns |= std::uint64_t{1} << (x | (y & ~7));
+        }
+      }
+      if (columns != 0) region.add(tile, columns);
+    }
+    return region;
   }
 
   FreeSpace& space_;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "planner/free_space.hpp"
+#include "planner/region.hpp"
 
 namespace concord {
 
@@ -25,6 +26,7 @@ struct CellPath {
   std::vector<Cell> cells;  ///< from a start to a goal, each a neighbour of the one before
   std::int64_t cost = 0;    ///< with those of both anchors
   std::int64_t expanded = 0;
+  Region reached;  ///< unless found: as long as nothing there becomes free, the same search fails again
 };
 
 /// The cheapest path from any start to any goal over open cells, by A*: to the eight neighbours, over a corner only if

@@ -56,10 +56,7 @@ StackWatch::StackWatch(Bus& bus, double resolution)
       map_(*this, "out/map", resolution),
       conflicts_(*this, "out/conflicts", resolution),
       grid_(*this, "out/grid", resolution) {
-  hear<Path>("out/path/[^/]+", [this](const Path& path) {
-    ++messages_;
-    paths_[path.id] = path;
-  });
+  hear<Path>("out/path/[^/]+", [this](const Path& path) { paths_[path.id] = path; });
   hear<Answer>(kAnswers, [this](const Answer& answer) {
     ++messages_;
     answers_[answer.id + " " + answer.process] = answer;
@@ -91,7 +88,8 @@ bool StackWatch::synced() const {
 }
 
 StackWatch::State StackWatch::state() const {
-  State state = {map_.receiver.revision(), conflicts_.receiver.revision(), grid_.receiver.revision(), messages_};
+  State state = {map_.receiver.revision(), conflicts_.receiver.revision(), grid_.receiver.revision(), messages_,
+                 static_cast<std::int64_t>(hash(paths_))};  // kept paths are said again and again
   for (const AgentState& agent : agents_.agents) {
     state.insert(state.end(), {agent.revision, agent.known, agent.occupied, agent.aligned ? 1 : 0});
   }

@@ -129,6 +129,53 @@ TEST_F(PlannerOnTheBus, AnswersAndReplansWhenAWallIsBuilt) {
   EXPECT_EQ(answers_.size(), 1U);
 }
 
+TEST_F(PlannerOnTheBus, SaysAKeptPathEverySecondAndWhenItEnds) {
+  start_planner(kStart);
+  map_sender_.begin("map");
+  run_seconds(2);
+  ask("p1", Eigen::Vector2d(0.4, 0.8), true);
+  DenseBrick corner;
+  corner.fill(kFree);
+  corner[local_of(VoxelIndex{7, 7, 3})] = kOccupied;
+  set({3, 1, 0}, Brick::from_dense(corner));  // away from the path
+  run_seconds(3.1);
+  ASSERT_EQ(paths_.size(), 4U);
+  EXPECT_EQ(paths_[3].id, "p1");
+  EXPECT_EQ(paths_[3].points, paths_[0].points);
+  EXPECT_GT(paths_[3].map_revision, paths_[0].map_revision);
+  EXPECT_EQ(counters_.get("paths.OK"), 1);  // found once
+  EXPECT_EQ(answers_.size(), 1U);
+  ask("p2", Eigen::Vector2d(0.5, 0.8), true);
+  ASSERT_EQ(paths_.size(), 6U);
+  EXPECT_EQ(paths_[4].id, "p1");
+  EXPECT_FALSE(paths_[4].active);
+  EXPECT_EQ(paths_[5].id, "p2");
+  EXPECT_TRUE(paths_[5].active);
+}
+
+TEST_F(PlannerOnTheBus, ForgetsWhereARobotIsThatIsNotAlignedAnyMore) {
+  start_planner(kStart);
+  map_sender_.begin("map");
+  run_seconds(2);
+  MapPose pose;
+  pose.agent = "robot1";
+  pose.T_map_base.translation() = Eigen::Vector3d(0.4, 0.8, 0);
+  bus_.publish("out/pose/robot1", encode(pose));
+  AgentState robot;
+  robot.id = "robot1";
+  robot.kind = "lidar";
+  robot.frame_id = "odom";
+  robot.aligned = true;
+  bus_.publish("out/agents", encode(AgentList{bus_.now(), {robot}}));
+  ask("p1", std::nullopt, false);
+  robot.aligned = false;
+  bus_.publish("out/agents", encode(AgentList{bus_.now(), {robot}}));
+  ask("p2", std::nullopt, false);
+  ASSERT_EQ(answers_.size(), 2U);
+  EXPECT_EQ(answers_[0].code, "OK");
+  EXPECT_EQ(answers_[1].code, "NO_POSE");
+}
+
 TEST_F(PlannerOnTheBus, SaysWhyThereIsNoPath) {
   start_planner(kStart);
   ask("p1", Eigen::Vector2d(0.4, 0.8), false);

@@ -8,6 +8,7 @@ namespace concord {
 namespace {
 
 using Rows = std::vector<std::string>;
+constexpr std::int64_t kSecond = 1'000'000;
 
 const Rows kTwoDoors{
     "############",  //
@@ -53,9 +54,11 @@ class ActivePath : public testing::Test {
     wanted.cells().for_each_brick([&](BrickIndex index, const Brick& brick) { planner_.set_brick(index, brick); });
     planner_.project();
     ++revision_;
+    utime_ += kSecond;
   }
-  Path ask(const PathRequest& request) { return planner_.request(request, 0.4, {revision_, 0}); }
-  std::vector<Path> replan() { return planner_.replan({revision_, 0}); }
+  [[nodiscard]] Planner::Moment now() const { return {revision_, utime_}; }
+  Path ask(const PathRequest& request) { return planner_.request(request, 0.4, now()).path; }
+  std::vector<Path> replan() { return planner_.replan(now()); }
 
   bool is_safe(const Path& path) {
     std::vector<Eigen::Vector2d> points;
@@ -65,6 +68,7 @@ class ActivePath : public testing::Test {
 
   Planner planner_{Grid(1.0, make_band(0, 1, 1.0).value(), 0.5)};
   std::int64_t revision_ = 0;
+  std::int64_t utime_ = 1'700'000'000'000'000;
 };
 
 TEST_F(ActivePath, IsReplannedWhenTheMapBlocksIt) {
@@ -168,20 +172,120 @@ TEST_F(ActivePath, TheSameRequestTwiceIsDoneOnce) {
   EXPECT_EQ(ask(once).status, "NO_VALID_PATH");
 }
 
-TEST_F(ActivePath, TheNewestRequestOfARobotWins) {
+TEST_F(ActivePath, OnlyARequestThatIsKeptTakesItsPlace) {
   show(kTwoDoors);
   ask(kAcross);
-  ask(from_to("p2", "robot1", Eigen::Vector2d(2.5, 2.5), {2.5, 7.5}));
+  PathRequest question = from_to("q1", "robot1", Eigen::Vector2d(2.5, 2.5), {2.5, 7.5});
+  question.keep_active = false;
+  const Planner::Reply aside = planner_.request(question, 0.4, now());
+  EXPECT_FALSE(aside.path.active);
+  EXPECT_FALSE(aside.ended);
+  PathRequest bad = from_to("q2", "robot1", Eigen::Vector2d(2.5, 2.5), {2.5, 7.5});
+  bad.radius = 1e9;
+  EXPECT_EQ(ask(bad).status, "BAD_REQUEST");
   show(kUpperShut);
-  EXPECT_TRUE(replan().empty());
+  const std::vector<Path> paths = replan();
+  ASSERT_EQ(paths.size(), 1U);
+  EXPECT_EQ(paths[0].id, "p1");
+
+  const Planner::Reply next =
+      planner_.request(from_to("p2", "robot1", Eigen::Vector2d(2.5, 2.5), {2.5, 7.5}), 0.4, now());
+  EXPECT_TRUE(next.path.active);
+  ASSERT_TRUE(next.ended);
+  EXPECT_EQ(next.ended->id, "p1");
+  EXPECT_EQ(next.ended->points, paths[0].points);
+  EXPECT_EQ(next.ended->plan_number, 1);
+  EXPECT_FALSE(next.ended->active);
   EXPECT_EQ(planner_.active_count(), 1U);
-  PathRequest last = from_to("p3", "robot1", Eigen::Vector2d(2.5, 2.5), {8.5, 7.5});
-  last.keep_active = false;
-  EXPECT_FALSE(ask(last).active);
-  EXPECT_EQ(planner_.active_count(), 0U);
+  const Path old = ask(kAcross);  // an old request that comes again is told the last word
+  EXPECT_FALSE(old.active);
+  EXPECT_EQ(old.plan_number, 1);
+}
+
+TEST_F(ActivePath, IsSaidOnceASecond) {
+  show(kTwoDoors);
+  const Path first = ask(kAcross);
+  utime_ += kSecond - 1;
+  EXPECT_TRUE(planner_.repeat(now()).empty());
+  utime_ += 1;
+  ++revision_;
+  const std::vector<Path> again = planner_.repeat(now());
+  ASSERT_EQ(again.size(), 1U);
+  EXPECT_TRUE(again[0].active);
+  EXPECT_EQ(again[0].points, first.points);
+  EXPECT_EQ(again[0].plan_number, 0);
+  EXPECT_EQ(again[0].map_revision, revision_);
+  EXPECT_TRUE(planner_.repeat(now()).empty());
+
+  show(kUpperShut);  // it does not hold any more, and is not said to
+  const std::vector<Path> before = planner_.repeat(now());
+  ASSERT_EQ(before.size(), 1U);
+  EXPECT_EQ(before[0].map_revision, revision_ - 1);
+  utime_ += kSecond / 2;
+  EXPECT_EQ(replan().size(), 1U);
+  utime_ += kSecond / 2;
+  EXPECT_TRUE(planner_.repeat(now()).empty());  // the new one was said meanwhile
+  utime_ -= 100 * kSecond;                      // somebody sets the clock
+  EXPECT_EQ(planner_.repeat(now()).size(), 1U);
+}
+
+TEST_F(ActivePath, ASearchThatFailedIsNotRepeatedWithinASecond) {
   show(kBothShut);
+  EXPECT_EQ(ask(kAcross).status, "NO_VALID_PATH");
+  show(kTwoDoors);
+  utime_ -= kSecond / 2;
   EXPECT_TRUE(replan().empty());
-  EXPECT_FALSE(ask(kAcross).active);  // an old request that comes again is told so
+  utime_ += kSecond / 2;
+  EXPECT_EQ(replan().size(), 1U);
+}
+
+/// What becomes free elsewhere is no reason to search again: the answer is as old as it was.
+TEST_F(ActivePath, ASearchThatFailedWaitsForAChangeWhereItCame) {
+  Rows rows(64, std::string(200, '#'));
+  for (int y = 2; y < 12; ++y) rows[y].replace(2, 10, "..........");
+  for (int y = 2; y < 12; ++y) rows[y].replace(152, 10, "..........");
+  show(rows);
+  EXPECT_EQ(ask(from_to("p1", "robot1", Eigen::Vector2d(4.5, 4.5), {155.5, 8.5})).status, "NO_VALID_PATH");
+  const auto searched = [&] {
+    replan();
+    return planner_.repeat(now()).at(0).utime == utime_;
+  };
+  rows[60][100] = '.';
+  show(rows);
+  EXPECT_FALSE(searched());
+  rows[9][12] = '.';  // in the wall of the room
+  show(rows);
+  EXPECT_TRUE(searched());
+  rows[6][80] = '.';  // on the straight line to the goal
+  show(rows);
+  EXPECT_TRUE(searched());
+}
+
+TEST_F(ActivePath, ASearchThatFailedIsTriedAgainWhereTheRobotMoves) {
+  show(kBothShut);
+  const PathRequest request = from_to("p1", "robot1", std::nullopt, {8.5, 2.5});
+  planner_.set_pose("robot1", {2.5, 2.5});
+  EXPECT_EQ(ask(request).status, "NO_VALID_PATH");
+  utime_ += kSecond;
+  planner_.set_pose("robot1", {2.9, 2.5});
+  EXPECT_TRUE(replan().empty());
+  planner_.set_pose("robot1", {7.5, 4.5});  // somebody carried it across
+  const std::vector<Path> paths = replan();
+  ASSERT_EQ(paths.size(), 1U);
+  EXPECT_EQ(paths[0].status, "OK");
+}
+
+TEST_F(ActivePath, ARobotThatIsNotAlignedIsNowhere) {
+  show(kTwoDoors);
+  const PathRequest request = from_to("p1", "robot1", std::nullopt, {8.5, 2.5});
+  planner_.set_pose("robot1", {2.5, 2.5});
+  planner_.set_pose("robot2", {2.5, 2.5});
+  planner_.keep_poses({"robot2", "robot3"});
+  EXPECT_EQ(ask(request).status, "NO_POSE");
+  planner_.keep_poses({"robot1", "robot2"});
+  EXPECT_TRUE(replan().empty());
+  planner_.set_pose("robot1", {2.5, 2.5});
+  ASSERT_EQ(replan().size(), 1U);
 }
 
 TEST_F(ActivePath, EveryBlockedRobotGetsItsPathThoughOneCallIsShort) {
@@ -215,6 +319,8 @@ TEST_F(ActivePath, PosesOfTooManyRobotsAreRefused) {
   }
   EXPECT_FALSE(planner_.set_pose("late", {0, 0}));
   EXPECT_TRUE(planner_.set_pose("robot7", {1, 1}));
+  planner_.keep_poses({"robot7"});
+  EXPECT_TRUE(planner_.set_pose("late", {0, 0}));
 }
 
 TEST_F(ActivePath, AClearedMapEndsThePath) {
