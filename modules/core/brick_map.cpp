@@ -10,6 +10,12 @@ namespace {
 
 constexpr std::size_t kTileGrowth = 8;  // bricks
 
+std::size_t known_voxels(const Tile& tile) {
+  std::size_t count = 0;
+  for (const Brick& brick : tile.bricks) count += brick.known_count();
+  return count;
+}
+
 }  // namespace
 
 const Tile* BrickMap::find(TileIndex index) const {
@@ -39,6 +45,7 @@ bool BrickMap::set(BrickIndex index, Brick brick) {
   const auto position = tile.bricks.begin() + std::popcount(tile.present & (bit - 1));
   if ((tile.present & bit) != 0) {
     if (*position == brick) return false;
+    known_count_ += brick.known_count() - position->known_count();
     if (!brick.empty()) {
       *position = std::move(brick);
       return true;
@@ -50,6 +57,7 @@ bool BrickMap::set(BrickIndex index, Brick brick) {
     return true;
   }
   if (brick.empty()) return false;
+  known_count_ += brick.known_count();
   // Grown by a few at a time: doubling would waste as much as many bricks take.
   const std::ptrdiff_t offset = position - tile.bricks.begin();
   if (tile.bricks.size() == tile.bricks.capacity()) tile.bricks.reserve(tile.bricks.size() + kTileGrowth);
@@ -62,8 +70,12 @@ bool BrickMap::set(BrickIndex index, Brick brick) {
 void BrickMap::set(TileIndex index, Tile tile) {
   assert(static_cast<std::size_t>(std::popcount(tile.present)) == tile.bricks.size());
   const auto it = tiles_.find(index);
-  if (it != tiles_.end()) brick_count_ -= it->second.bricks.size();
+  if (it != tiles_.end()) {
+    brick_count_ -= it->second.bricks.size();
+    known_count_ -= known_voxels(it->second);
+  }
   brick_count_ += tile.bricks.size();
+  known_count_ += known_voxels(tile);
   if (tile.present != 0) {
     tiles_.insert_or_assign(index, std::move(tile));
   } else if (it != tiles_.end()) {
@@ -74,12 +86,7 @@ void BrickMap::set(TileIndex index, Tile tile) {
 void BrickMap::clear() {
   tiles_.clear();
   brick_count_ = 0;
-}
-
-std::size_t BrickMap::known_count() const {
-  std::size_t count = 0;
-  for_each_brick([&](BrickIndex, const Brick& brick) { count += brick.known_count(); });
-  return count;
+  known_count_ = 0;
 }
 
 std::size_t BrickMap::occupied_count() const {

@@ -36,7 +36,8 @@ class BrickMap {
 
   [[nodiscard]] bool empty() const { return brick_count_ == 0; }
   [[nodiscard]] std::size_t brick_count() const { return brick_count_; }
-  [[nodiscard]] std::size_t known_count() const;
+  [[nodiscard]] std::size_t known_count() const { return known_count_; }
+  /// Walks the whole map.
   [[nodiscard]] std::size_t occupied_count() const;
 
   /// In ascending order: what every output and digest walks.
@@ -59,6 +60,7 @@ class BrickMap {
  private:
   std::unordered_map<TileIndex, Tile, IndexHash> tiles_;
   std::size_t brick_count_ = 0;
+  std::size_t known_count_ = 0;
 };
 
 /// 64-bit hash over the sorted brick indices and their values, nothing else: equal maps on any machine,
