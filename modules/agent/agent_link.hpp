@@ -11,11 +11,12 @@ namespace concord {
 /// A robot's whole connection to the stack, for programs that have no LCM loop of their own. One thread.
 class AgentLink {
  public:
-  /// `lcm_url` and `resolution` are the site's. @throws ConfigError when LCM cannot join.
-  AgentLink(const std::string& lcm_url, const std::string& agent, double resolution, std::function<void()> on_reset)
+  /// `lcm_url`, `resolution` and `bytes_per_second` (the pace of the stream) are the site's.
+  /// @throws ConfigError when LCM cannot join.
+  AgentLink(const std::string& lcm_url, const std::string& agent, double resolution, std::function<void()> on_reset,
+            double bytes_per_second = 5e6)
       : bus_(lcm_url, counters_),
-        submap_(bus_, counters_, {.agent = agent, .resolution = resolution, .boot_id = bus_.now()},
-                std::move(on_reset)) {}
+        submap_(bus_, counters_, {agent, resolution, bytes_per_second, bus_.now()}, std::move(on_reset)) {}
 
   [[nodiscard]] SubmapPublisher& submap() { return submap_; }
 

@@ -6,8 +6,9 @@
 
 namespace concord {
 
-CloudPublisher::CloudPublisher(Bus& bus, Counters& counters, const std::string& agent, std::function<void()> on_reset)
-    : bus_(bus), agent_(agent), reset_listener_(bus, counters, agent, std::move(on_reset)) {
+CloudPublisher::CloudPublisher(Bus& bus, Counters& counters, const std::string& agent, std::int64_t boot_id,
+                               std::function<void()> on_reset)
+    : bus_(bus), agent_(agent), boot_id_(boot_id), reset_listener_(bus, counters, agent, std::move(on_reset)) {
   assert(is_name(agent_));
 }
 
@@ -15,12 +16,14 @@ void CloudPublisher::begin_frame(const std::string& frame_id) {
   assert(is_name(frame_id));
   frame_id_ = frame_id;
   sequence_ = 0;
+  reset_listener_.begin_frame(frame_id);
 }
 
 void CloudPublisher::publish(const Transform& T_agent_sensor, double max_range, std::vector<Eigen::Vector3f> points,
                              std::int64_t utime) {
   assert(!frame_id_.empty());
-  const Bytes bytes = encode(CloudMessage{utime, sequence_++, frame_id_, T_agent_sensor, max_range, std::move(points)});
+  const Bytes bytes =
+      encode(CloudMessage{utime, boot_id_, sequence_++, frame_id_, T_agent_sensor, max_range, std::move(points)});
   bytes_sent_ += static_cast<std::int64_t>(bytes.size());
   bus_.publish("in/" + agent_ + "/cloud", bytes);
 }

@@ -14,10 +14,12 @@ namespace concord {
 /// stays lost (ingest counts it); whoever has a map sends that instead (submap_publisher.hpp).
 class CloudPublisher {
  public:
-  /// `agent` is the id in the site file: is_name(). `on_reset` as in SubmapPublisher.
-  CloudPublisher(Bus& bus, Counters& counters, const std::string& agent, std::function<void()> on_reset);
+  /// `agent` is the id in the site file: is_name(). `boot_id` and `on_reset` as in SubmapPublisher.
+  CloudPublisher(Bus& bus, Counters& counters, const std::string& agent, std::int64_t boot_id,
+                 std::function<void()> on_reset);
 
-  /// A new frame, at the start and whenever the robot's odometry begins anew. @pre is_name(frame_id).
+  /// A new frame, at the start and whenever the robot's odometry begins anew. The same id after a restart says that
+  /// clouds go on adding to what is there. @pre is_name(frame_id).
   void begin_frame(const std::string& frame_id);
 
   /// Points in the agent's frame; those beyond `max_range` (metres, 0: none) only free the space up to it.
@@ -33,6 +35,7 @@ class CloudPublisher {
  private:
   Bus& bus_;
   std::string agent_;
+  std::int64_t boot_id_;
   std::string frame_id_;
   std::int64_t sequence_ = 0;
   std::int64_t bytes_sent_ = 0;

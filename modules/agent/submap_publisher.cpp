@@ -20,6 +20,7 @@ void SubmapPublisher::begin_frame(const std::string& frame_id) {
   frame_id_ = frame_id;
   submap_.clear();
   sender_.begin(frame_id);
+  reset_listener_.begin_frame(frame_id);
 }
 
 std::size_t SubmapPublisher::publish(const BrickMap& submap) {

@@ -22,7 +22,8 @@ class SubmapPublisher {
     std::int64_t boot_id = 0;       ///< must be greater than that of every earlier start: take Bus::now()
   };
 
-  /// `on_reset` is called when a person gave up this agent's submap: start mapping anew, then call begin_frame.
+  /// `on_reset` is called when a person gave up this agent's submap and ingest dropped it, at the latest with the
+  /// first that is sent after it: start mapping anew, then call begin_frame.
   SubmapPublisher(Bus& bus, Counters& counters, Config config, std::function<void()> on_reset);
 
   /// A new frame, at the start and whenever the robot's SLAM begins anew: what was published is void.

@@ -31,7 +31,7 @@ void StreamGaps::hear(std::int64_t utime, const std::string& channel, std::span<
     if (!cloud || cloud->sequence >= kMostClouds) return;
     Clouds& clouds = clouds_[channel];
     clouds.frame_id = cloud->frame_id;
-    clouds.heard[cloud->frame_id].add(cloud->sequence + 1, cloud->sequence + 1);
+    clouds.heard[cloud->frame_id][cloud->boot_id].add(cloud->sequence + 1, cloud->sequence + 1);
   }
 }
 
@@ -41,9 +41,10 @@ std::vector<StreamGaps::Gap> StreamGaps::gaps() const {
     if (receiver->heard() && !receiver->synced()) missing[stream + "/bricks"] = receiver->missing();
   }
   for (const auto& [channel, clouds] : clouds_) {
-    const VersionSet& heard = clouds.heard.at(clouds.frame_id);
     std::int64_t count = 0;
-    for (const auto& [first, last] : heard.missing(heard.highest())) count += last - first + 1;
+    for (const auto& [boot_id, heard] : clouds.heard.at(clouds.frame_id)) {
+      for (const auto& [first, last] : heard.missing(heard.highest())) count += last - first + 1;
+    }
     if (count > 0) missing[channel] = count;
   }
   std::vector<Gap> gaps;

@@ -31,7 +31,8 @@ class StreamGaps {
  private:
   struct Clouds {
     std::string frame_id;
-    std::map<std::string, VersionSet> heard;  ///< by frame_id: sequence numbers, plus 1
+    /// By frame_id and start of the sender: sequence numbers, plus 1.
+    std::map<std::string, std::map<std::int64_t, VersionSet>> heard;
   };
 
   BrickReceiver& receiver(const std::string& stream);

@@ -37,6 +37,11 @@ bool is_dead(const Agent& agent, const std::string& frame_id) {
   return std::find(agent.dead_frames.begin(), agent.dead_frames.end(), frame_id) != agent.dead_frames.end();
 }
 
+/// Whether this start of the sender was followed by a later one, or by none that still speaks.
+bool is_stale(const Agent& agent, std::int64_t boot_id, std::int64_t now) {
+  return boot_id < agent.next_cloud.boot_id && now - agent.last_cloud < Ingest::kBootSilence;
+}
+
 tl::unexpected<Error> too_many_voxels(const std::string& id) {
   return refuse(Code::kTooLarge, "layer of " + id + " is full; raise ingest.max_known_voxels in the site file");
 }
@@ -56,6 +61,9 @@ Result<void> Ingest::admit(const std::string& id, const std::string& frame_id, S
     return refuse(Code::kTooLarge, "there are " + std::to_string(agents_.size()) +
                                        " agents; remove one or raise ingest.max_agents in the site file");
   }
+  if (source == Source::kFile) {
+    return refuse(Code::kExists, "there is an agent called " + id + "; load under another id, or remove it first");
+  }
   if (is_dead(*agent, frame_id)) {
     return refuse(Code::kBadFrame, "frame " + frame_id + " of " + id + " was reset; start a new frame_id");
   }
@@ -66,13 +74,17 @@ Result<void> Ingest::admit(const std::string& id, const std::string& frame_id, S
   return {};
 }
 
+bool Ingest::is_over(const std::string& id, const std::string& frame_id) const {
+  const Agent* agent = find(id);
+  return agent != nullptr && is_dead(*agent, frame_id);
+}
+
 Agent& Ingest::enter(const std::string& id, const std::string& frame_id, Source source, Change& change) {
   Agent& agent = agents_[id];
   if (agent.frame_id != frame_id) {
     agent.frame_id = frame_id;
-    agent.next_sequence = 0;
+    agent.next_cloud = {};
     agent.layer.clear();
-    agent.known = 0;
     change.new_frame = true;
   }
   agent.source = source;
@@ -85,7 +97,6 @@ Result<Change> Ingest::begin_stream(const std::string& id, const std::string& fr
   Agent& agent = enter(id, frame_id, Source::kStream, change);
   change.bricks = agent.layer.sorted_bricks();
   agent.layer.clear();
-  agent.known = 0;
   return change;
 }
 
@@ -94,9 +105,8 @@ Result<bool> Ingest::set_brick(const std::string& id, BrickIndex index, Brick br
   assert(it != agents_.end() && it->second.source == Source::kStream);
   Agent& agent = it->second;
   const Brick* old = agent.layer.find(index);
-  const std::int64_t known = agent.known + brick.known_count() - (old != nullptr ? old->known_count() : 0);
-  if (known > config_.max_known_voxels && known > agent.known) return too_many_voxels(id);
-  agent.known = known;
+  const std::int64_t more = brick.known_count() - (old != nullptr ? old->known_count() : 0);
+  if (more > 0 && agent.known() + more > config_.max_known_voxels) return too_many_voxels(id);
   return agent.layer.set(index, std::move(brick));
 }
 
@@ -109,19 +119,23 @@ Result<Change> Ingest::take_octomap(const std::string& id, const std::string& fr
   Agent& agent = enter(id, frame_id, Source::kOctomap, change);
   change.bricks = difference(agent.layer, import->map);
   agent.layer = std::move(import->map);
-  agent.known = static_cast<std::int64_t>(agent.layer.known_count());
   return change;
 }
 
-Result<CloudChange> Ingest::take_cloud(const std::string& id, const std::string& frame_id, std::int64_t sequence,
-                                       Scan scan) {
+Result<CloudChange> Ingest::take_cloud(const std::string& id, const std::string& frame_id, CloudNumber number,
+                                       Scan scan, std::int64_t now) {
   if (auto ok = admit(id, frame_id, Source::kClouds); !ok) return tl::unexpected(ok.error());
+  const auto [boot_id, sequence] = number;
   if (sequence < 0 || sequence > kMaxSequence) return refuse(Code::kBadRequest, "sequence counts up by one from 0");
   const Agent* before = find(id);
   const bool goes_on = before != nullptr && before->frame_id == frame_id;
-  const std::int64_t expected = goes_on ? before->next_sequence : 0;
+  if (goes_on && is_stale(*before, boot_id, now)) {
+    return refuse(Code::kStale, "a cloud of an earlier start of " + id);
+  }
+  const bool same_start = goes_on && before->next_cloud.boot_id == boot_id;
+  const std::int64_t expected = same_start ? before->next_cloud.sequence : 0;
   if (sequence < expected) return CloudChange{.change = {}, .duplicate = true};
-  if (goes_on && before->known >= config_.max_known_voxels) return too_many_voxels(id);
+  if (goes_on && before->known() >= config_.max_known_voxels) return too_many_voxels(id);
   auto fit = checked(std::move(scan), config_.resolution);
   if (!fit) return tl::unexpected(fit.error());
 
@@ -133,8 +147,8 @@ Result<CloudChange> Ingest::take_cloud(const std::string& id, const std::string&
   CloudChange taken{.change = {}, .lost = sequence - expected, .duplicate = false, .skipped = fit->skipped};
   Agent& agent = enter(id, frame_id, Source::kClouds, taken.change);
   if (!goes_on) agent.layer = std::move(begun);
-  agent.next_sequence = sequence + 1;
-  agent.known = static_cast<std::int64_t>(agent.layer.known_count());
+  agent.next_cloud = {boot_id, sequence + 1};
+  agent.last_cloud = now;
   taken.change.bricks = std::move(*bricks);
   return taken;
 }
@@ -152,9 +166,6 @@ Result<Agent> Ingest::after_reset(const std::string& id) const {
 }
 
 Result<Agent> Ingest::from_file(const std::string& id, const std::string& map, ByteSpan file) const {
-  if (find(id) != nullptr) {
-    return refuse(Code::kExists, "there is an agent called " + id + "; load under another id, or remove it first");
-  }
   // Cut to what a frame may be called; it only has to differ from the agent's other frames.
   const std::string frame_id = ("map-" + map).substr(0, kLongestName);
   if (auto ok = admit(id, frame_id, Source::kFile); !ok) return tl::unexpected(ok.error());
@@ -164,7 +175,6 @@ Result<Agent> Ingest::from_file(const std::string& id, const std::string& map, B
   agent.frame_id = frame_id;
   agent.source = Source::kFile;
   agent.layer = std::move(import->map);
-  agent.known = static_cast<std::int64_t>(agent.layer.known_count());
   return agent;
 }
 

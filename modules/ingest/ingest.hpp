@@ -14,14 +14,22 @@ namespace concord {
 /// What an agent's present layer was made of.
 enum class Source { kStream, kOctomap, kClouds, kFile };
 
+/// Clouds are counted from 0 in each start of their sender.
+struct CloudNumber {
+  std::int64_t boot_id = 0;  ///< greater than that of every earlier start
+  std::int64_t sequence = 0;
+};
+
 /// One agent's claim about space, in its own frame.
 struct Agent {
   std::string frame_id;
   Source source = Source::kStream;
-  std::int64_t next_sequence = 0;        ///< of its clouds in this frame; earlier ones are duplicates
+  CloudNumber next_cloud;                ///< in this frame; earlier ones of the same start are duplicates
+  std::int64_t last_cloud = 0;           ///< when one was taken, microseconds; 0: not since this process started
   std::vector<std::string> dead_frames;  ///< frames that were reset, the latest last
   BrickMap layer;
-  std::int64_t known = 0;  ///< voxels of `layer`
+
+  [[nodiscard]] std::int64_t known() const { return static_cast<std::int64_t>(layer.known_count()); }
 };
 
 /// What a message did to a layer.
@@ -50,14 +58,19 @@ class Ingest {
     std::int64_t max_agents = 64;
     std::int64_t max_known_voxels = 400'000'000;  ///< per agent
   };
+  /// After this without a cloud an older boot_id is believed: the robot's clock went back. Microseconds.
+  static constexpr std::int64_t kBootSilence = 3'000'000;
   /// Resets that an agent's memory holds; older dead frames are forgotten.
   static constexpr std::size_t kMaxDeadFrames = 64;
 
   explicit Ingest(Config config) : config_(config) {}
 
   /// Whether content of this frame is taken from this source now. Refused: kBadName, kTooLarge (too many agents),
-  /// kBadFrame (the frame was reset, or is no name), kBadRequest (the frame belongs to a brick stream).
+  /// kBadFrame (the frame was reset, or is no name), kBadRequest (the frame belongs to a brick stream), kExists (a file
+  /// never goes into an agent that is there).
   [[nodiscard]] Result<void> admit(const std::string& id, const std::string& frame_id, Source source) const;
+  /// Whether this frame of the agent was reset: its sender must begin another.
+  [[nodiscard]] bool is_over(const std::string& id, const std::string& frame_id) const;
 
   /// A brick stream begins in this frame. Whatever was there is void.
   [[nodiscard]] Result<Change> begin_stream(const std::string& id, const std::string& frame_id);
@@ -68,9 +81,10 @@ class Ingest {
   [[nodiscard]] Result<Change> take_octomap(const std::string& id, const std::string& frame_id, ByteSpan data,
                                             OctomapFormat format, double resolution);
 
-  /// Adds a cloud to the layer. A full layer takes none; the one that fills it may go beyond.
-  [[nodiscard]] Result<CloudChange> take_cloud(const std::string& id, const std::string& frame_id,
-                                               std::int64_t sequence, Scan scan);
+  /// Adds a cloud to the layer. A full layer takes none; the one that fills it may go beyond. A greater boot_id begins
+  /// the numbers anew. Refused: kStale (of an earlier start of the sender), and what scan.hpp refuses.
+  [[nodiscard]] Result<CloudChange> take_cloud(const std::string& id, const std::string& frame_id, CloudNumber number,
+                                               Scan scan, std::int64_t now);
 
   /// The agent as a reset leaves it: without content, its frame over until the robot starts another.
   /// Refused: kNoAgent. Given to `put` once it is safe.

@@ -9,7 +9,13 @@
 namespace concord {
 namespace {
 
-constexpr std::int64_t kFlushPeriod = 2'000'000;
+/// What changed is gathered for a while, because the same bricks change again and again; then it is written in slices,
+/// because messages wait meanwhile.
+constexpr std::int64_t kGatherPeriod = 2'000'000;
+constexpr std::int64_t kSlicePeriod = 50'000;
+constexpr std::int64_t kSayOverPeriod = 1'000'000;
+/// What was refused for want of room is asked for when there is this much, so that it is not asked for all the time.
+constexpr double kRoomAgain = 0.1;
 constexpr std::int64_t kCountPeriod = 1'000'000;
 /// A brick stream speaks each second while its sender lives.
 constexpr std::int64_t kStreamSilence = 3'000'000;
@@ -44,7 +50,9 @@ IngestNode::IngestNode(const NodeContext& context)
   subscribe();
 }
 
-IngestNode::~IngestNode() { flush(); }
+IngestNode::~IngestNode() {
+  if (auto done = store_.flush(ingest_.agents()); !done) counters_.refused("disk", done.error());
+}
 
 void IngestNode::restore() {
   auto loaded = store_.load();
@@ -55,7 +63,7 @@ void IngestNode::restore() {
     const Change change = ingest_.put(id, std::move(stored));
     const Agent& agent = *ingest_.find(id);
     streams_.tell(id, agent, change);
-    spdlog::info("{}: {} voxels in frame {} from disk", id, agent.known, agent.frame_id);
+    spdlog::info("{}: {} voxels in frame {} from disk", id, agent.known(), agent.frame_id);
     if (agent.source != Source::kStream || !ingest_.admit(id, agent.frame_id, Source::kStream)) continue;
     const Input& input = inputs_.emplace(id, Input{make_receiver(id), bus_.now()}).first->second;
     input.receiver->adopt(agent.frame_id, agent.layer);
@@ -74,8 +82,11 @@ void IngestNode::subscribe() {
   hear("in/agent_request", &IngestNode::on_agent_request);
   hear("in/map_request", &IngestNode::on_map_request);
   hear("in/downsample", &IngestNode::on_downsample);
-  bus_.every(kFlushPeriod, [this] { flush(); });
-  bus_.every(kCountPeriod, [this] { count(); });
+  bus_.every(kSlicePeriod, [this] { write_some(); });
+  bus_.every(kCountPeriod, [this] {
+    count();
+    ask_again_where_there_is_room();
+  });
 }
 
 /// The core's rules, and those that hang on time and on what the bus can bear.
@@ -94,11 +105,26 @@ Result<void> IngestNode::admit(const std::string& id, const std::string& frame_i
   return {};
 }
 
-BrickReceiver* IngestNode::receiver_of(const std::string& id, const std::string& frame_id, const std::string& channel) {
-  if (auto ok = admit(id, frame_id, Source::kStream); !ok) {
-    counters_.refused(channel, ok.error());
-    return nullptr;
-  }
+/// Counts what is refused. Who sends in a frame that is over is told so: the first message may have been lost.
+bool IngestNode::admitted(const std::string& channel, const std::string& frame_id, Source source) {
+  const std::string id = agent_of(channel);
+  const auto ok = admit(id, frame_id, source);
+  if (ok) return true;
+  counters_.refused(channel, ok.error());
+  if (ingest_.is_over(id, frame_id)) say_frame_over(id, frame_id);
+  return false;
+}
+
+void IngestNode::say_frame_over(const std::string& id, const std::string& frame_id) {
+  std::int64_t& last = said_over_[id];
+  if (bus_.now() - last < kSayOverPeriod) return;
+  last = bus_.now();
+  bus_.publish("out/frame_over/" + id, encode(FrameOver{last, frame_id}));
+}
+
+BrickReceiver* IngestNode::receiver_of(const std::string& channel, const std::string& frame_id) {
+  if (!admitted(channel, frame_id, Source::kStream)) return nullptr;
+  const std::string id = agent_of(channel);
   auto it = inputs_.find(id);
   if (it == inputs_.end()) {
     if (receivers_made_ >= kMaxReceiversMade) {
@@ -116,12 +142,16 @@ std::unique_ptr<BrickReceiver> IngestNode::make_receiver(const std::string& id) 
   events.on_frame = [this, id](const std::string& frame_id) {
     const auto change = ingest_.begin_stream(id, frame_id);
     if (!change) return counters_.refused("in/" + id, change.error());
+    inputs_.at(id).lacking = false;
     spdlog::info("{}: frame {} begins", id, frame_id);
     changed(id, *change);
   };
   events.on_brick = [this, id](BrickIndex index, Brick brick) {
     const auto changes = ingest_.set_brick(id, index, std::move(brick));
-    if (!changes) return counters_.refused("in/" + id, changes.error());
+    if (!changes) {
+      inputs_.at(id).lacking = true;
+      return counters_.refused("in/" + id, changes.error());
+    }
     if (!*changes) return;
     store_.note(id, index);
     streams_.touch(id, index);
@@ -133,20 +163,20 @@ std::unique_ptr<BrickReceiver> IngestNode::make_receiver(const std::string& id) 
 
 void IngestNode::on_packet(const std::string& channel, const BrickPacket& packet) {
   counters_.add("bytes_in", static_cast<std::int64_t>(packet.data.size()));
-  BrickReceiver* receiver = receiver_of(agent_of(channel), packet.frame_id, channel);
+  BrickReceiver* receiver = receiver_of(channel, packet.frame_id);
   if (receiver != nullptr) receiver->on_packet(packet);
 }
 
 void IngestNode::on_digest(const std::string& channel, const BrickDigest& digest) {
   if (digest.frame_id.empty()) return;  // the sender has ended; what it sent stays
-  BrickReceiver* receiver = receiver_of(agent_of(channel), digest.frame_id, channel);
+  BrickReceiver* receiver = receiver_of(channel, digest.frame_id);
   if (receiver != nullptr) receiver->on_digest(digest);
 }
 
 void IngestNode::on_octomap(const std::string& channel, const OctomapMessage& message) {
   counters_.add("bytes_in", static_cast<std::int64_t>(message.data.size()));
+  if (!admitted(channel, message.frame_id, Source::kOctomap)) return;
   const std::string id = agent_of(channel);
-  if (auto ok = admit(id, message.frame_id, Source::kOctomap); !ok) return counters_.refused(channel, ok.error());
   const OctomapFormat format = message.binary ? OctomapFormat::kBinary : OctomapFormat::kFull;
   const auto change = ingest_.take_octomap(id, message.frame_id, message.data, format, message.resolution);
   if (!change) return counters_.refused(channel, change.error());
@@ -156,10 +186,11 @@ void IngestNode::on_octomap(const std::string& channel, const OctomapMessage& me
 
 void IngestNode::on_cloud(const std::string& channel, const CloudMessage& message) {
   counters_.add("bytes_in", static_cast<std::int64_t>(message.points.size() * sizeof(Eigen::Vector3f)));
+  if (!admitted(channel, message.frame_id, Source::kClouds)) return;
   const std::string id = agent_of(channel);
-  if (auto ok = admit(id, message.frame_id, Source::kClouds); !ok) return counters_.refused(channel, ok.error());
   Scan scan{message.T_agent_sensor, message.max_range, message.points};
-  const auto taken = ingest_.take_cloud(id, message.frame_id, message.sequence, std::move(scan));
+  const CloudNumber number{message.boot_id, message.sequence};
+  const auto taken = ingest_.take_cloud(id, message.frame_id, number, std::move(scan), bus_.now());
   if (!taken) return counters_.refused(channel, taken.error());
   if (taken->duplicate) return counters_.add("duplicates." + id);
   if (taken->lost > 0) counters_.add("gaps." + id, std::min(taken->lost, kMostLostCounted));
@@ -169,17 +200,35 @@ void IngestNode::on_cloud(const std::string& channel, const CloudMessage& messag
 }
 
 void IngestNode::changed(const std::string& id, const Change& change) {
-  store_.note(id, change);
+  store_.note(id, *ingest_.find(id), change);
   streams_.tell(id, *ingest_.find(id), change);
 }
 
-void IngestNode::flush() {
-  if (auto done = store_.flush(ingest_.agents()); !done) counters_.refused("disk", done.error());
+void IngestNode::write_some() {
+  if (bus_.now() < write_at_) return;
+  const auto done = store_.write_some(ingest_.agents());
+  if (!done) counters_.refused("disk", done.error());
+  if (!done || store_.is_idle()) write_at_ = bus_.now() + kGatherPeriod;
 }
 
 void IngestNode::count() {
   counters_.set("agents", static_cast<std::int64_t>(ingest_.agents().size()));
-  for (const auto& [id, agent] : ingest_.agents()) counters_.set("known." + id, agent.known);
+  for (const auto& [id, agent] : ingest_.agents()) counters_.set("known." + id, agent.known());
+  for (const auto& [id, input] : inputs_) {
+    if (input.lacking || counters_.get("lacking." + id) != 0) counters_.set("lacking." + id, input.lacking ? 1 : 0);
+  }
+}
+
+/// A receiver that begins anew from the layer finds that the sender has more, and asks for it.
+void IngestNode::ask_again_where_there_is_room() {
+  const auto enough = static_cast<std::int64_t>((1 - kRoomAgain) * static_cast<double>(site_.ingest.max_known_voxels));
+  for (auto& [id, input] : inputs_) {
+    const Agent* agent = ingest_.find(id);
+    if (!input.lacking || agent == nullptr || agent->known() > enough || receivers_made_ >= kMaxReceiversMade) continue;
+    input.receiver = make_receiver(id);
+    input.receiver->adopt(agent->frame_id, agent->layer);
+    input.lacking = false;
+  }
 }
 
 }  // namespace concord

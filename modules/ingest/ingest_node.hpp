@@ -32,6 +32,7 @@ class IngestNode {
   struct Input {
     std::unique_ptr<BrickReceiver> receiver;
     std::int64_t last_heard = 0;
+    bool lacking = false;  ///< bricks were refused because the layer was full
   };
 
   void restore();
@@ -43,9 +44,11 @@ class IngestNode {
   void on_cloud(const std::string& channel, const CloudMessage& message);
 
   [[nodiscard]] Result<void> admit(const std::string& id, const std::string& frame_id, Source source) const;
-  [[nodiscard]] BrickReceiver* receiver_of(const std::string& id, const std::string& frame_id,
-                                           const std::string& channel);
+  [[nodiscard]] bool admitted(const std::string& channel, const std::string& frame_id, Source source);
+  void say_frame_over(const std::string& id, const std::string& frame_id);
+  [[nodiscard]] BrickReceiver* receiver_of(const std::string& channel, const std::string& frame_id);
   [[nodiscard]] std::unique_ptr<BrickReceiver> make_receiver(const std::string& id);
+  void ask_again_where_there_is_room();
   void changed(const std::string& id, const Change& change);
 
   void on_agent_request(const std::string& channel, const AgentRequest& request);
@@ -57,7 +60,7 @@ class IngestNode {
   [[nodiscard]] Result<std::int64_t> downsample(const DownsampleRequest& request);
   [[nodiscard]] Answer answer_to(const std::string& id, const Result<std::int64_t>& count, const char* done);
 
-  void flush();
+  void write_some();
   void count();
 
   Bus& bus_;
@@ -70,6 +73,8 @@ class IngestNode {
   PacedQueue replies_;
   RecentAnswers answers_;
   std::map<std::string, Input> inputs_;
+  std::map<std::string, std::int64_t> said_over_;  ///< when an agent was last told that its frame is over
+  std::int64_t write_at_ = 0;                      ///< not before this time
   int receivers_made_ = 0;
 };
 

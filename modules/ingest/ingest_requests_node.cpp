@@ -40,23 +40,27 @@ Answer IngestNode::answer_to(const std::string& id, const Result<std::int64_t>& 
 }
 
 void IngestNode::on_agent_request(const std::string&, const AgentRequest& request) {
-  if (answers_.repeat(request.id)) return;
+  const std::uint64_t content = content_of(request);
+  if (answers_.repeat(request.id, process_, content)) return;
   const bool is_reset = request.op == AgentRequest::Op::kReset;
   const auto count = is_reset ? reset(request.agent) : remove(request.agent);
-  answers_.give(answer_to(request.id, count, is_reset ? "reset; waits for a new frame_id" : "removed"));
+  answers_.give(answer_to(request.id, count, is_reset ? "reset; waits for a new frame_id" : "removed"), content);
 }
 
 void IngestNode::on_map_request(const std::string&, const MapRequest& request) {
-  if (request.op != MapRequest::Op::kLoad || answers_.repeat(request.id)) return;
-  answers_.give(answer_to(request.id, load(request), "loaded; it is an agent that waits to be aligned"));
+  if (request.op != MapRequest::Op::kLoad) return;
+  const std::uint64_t content = content_of(request);
+  if (answers_.repeat(request.id, process_, content)) return;
+  answers_.give(answer_to(request.id, load(request), "loaded; it is an agent that waits to be aligned"), content);
 }
 
-/// Done again when it is asked again: parts may have been lost.
+/// Done again when it is asked again: parts may have been lost. Not while they are on their way.
 void IngestNode::on_downsample(const std::string&, const DownsampleRequest& request) {
+  if (replies_.waits(request.id)) return;
   const auto count = downsample(request);
   const Answer reply = answer_to(request.id, count, "all parts were sent");
   if (!count) return answer(bus_, reply);
-  replies_.push(kAnswers, encode(reply, bus_.now()));
+  replies_.push(request.id, kAnswers, encode(reply, bus_.now()));
 }
 
 Result<std::int64_t> IngestNode::reset(const std::string& id) {
@@ -64,10 +68,15 @@ Result<std::int64_t> IngestNode::reset(const std::string& id) {
   if (!after) return tl::unexpected(after.error());
   if (auto done = store_.replace(id, &*after); !done) return tl::unexpected(done.error());
   const auto input = inputs_.find(id);
-  if (input != inputs_.end()) input->second.receiver->close_frame();
-  const std::int64_t dropped = ingest_.find(id)->known;
+  if (input != inputs_.end()) {
+    input->second.receiver->close_frame();
+    input->second.lacking = false;
+  }
+  const Agent& agent = *ingest_.find(id);
+  const std::int64_t dropped = agent.known();
   const Change change = ingest_.put(id, std::move(*after));
-  streams_.tell(id, *ingest_.find(id), change);
+  streams_.tell(id, agent, change);
+  say_frame_over(id, agent.frame_id);
   spdlog::info("{}: reset", id);
   return dropped;
 }
@@ -75,9 +84,10 @@ Result<std::int64_t> IngestNode::reset(const std::string& id) {
 Result<std::int64_t> IngestNode::remove(const std::string& id) {
   const Agent* agent = ingest_.find(id);
   if (agent == nullptr) return unknown_agent(id);
-  const std::int64_t dropped = agent->known;
+  const std::int64_t dropped = agent->known();
   if (auto done = store_.replace(id, nullptr); !done) return tl::unexpected(done.error());
   inputs_.erase(id);
+  said_over_.erase(id);
   streams_.end(id);
   ingest_.remove(id);
   counters_.set("known." + id, 0);
@@ -88,9 +98,7 @@ Result<std::int64_t> IngestNode::remove(const std::string& id) {
 /// Nothing changes before it is on disk; so neither does anything after a refusal.
 Result<std::int64_t> IngestNode::load(const MapRequest& request) {
   const std::string& id = request.agent.empty() ? request.map : request.agent;
-  if (ingest_.find(id) == nullptr) {
-    if (auto ok = admit(id, request.map, Source::kFile); !ok) return tl::unexpected(ok.error());
-  }
+  if (auto ok = admit(id, request.map, Source::kFile); !ok) return tl::unexpected(ok.error());
   const auto file = read_map(site_.state / "maps", request);
   if (!file) return tl::unexpected(file.error());
   auto agent = ingest_.from_file(id, request.map, *file);
@@ -99,7 +107,7 @@ Result<std::int64_t> IngestNode::load(const MapRequest& request) {
   const Change change = ingest_.put(id, std::move(*agent));
   streams_.tell(id, *ingest_.find(id), change);
   spdlog::info("{}: loaded from map {}", id, request.map);
-  return ingest_.find(id)->known;
+  return ingest_.find(id)->known();
 }
 
 Result<std::int64_t> IngestNode::downsample(const DownsampleRequest& request) {
@@ -124,7 +132,7 @@ Result<std::int64_t> IngestNode::downsample(const DownsampleRequest& request) {
                             static_cast<std::int32_t>(part),
                             static_cast<std::int32_t>(parts),
                             {first, last}};
-    replies_.push("out/downsampled", encode(value, bus_.now()));
+    replies_.push(request.id, "out/downsampled", encode(value, bus_.now()));
   }
   return static_cast<std::int64_t>(points.size());
 }

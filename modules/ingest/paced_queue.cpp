@@ -1,6 +1,7 @@
 #include "ingest/paced_queue.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace concord {
 namespace {
@@ -16,14 +17,19 @@ PacedQueue::PacedQueue(Bus& bus, double bytes_per_second)
   });
 }
 
-void PacedQueue::push(std::string channel, Bytes bytes) { queue_.emplace_back(std::move(channel), std::move(bytes)); }
+void PacedQueue::push(const std::string& request, std::string channel, Bytes bytes) {
+  queue_.push_back({request, std::move(channel), std::move(bytes)});
+  ++waiting_[request];
+}
 
 void PacedQueue::send_some() {
   budget_ = std::min(budget_ + bytes_per_step_, bytes_per_step_);
   while (!queue_.empty() && budget_ > 0) {
-    const auto& [channel, bytes] = queue_.front();
-    bus_.publish(channel, bytes);
-    budget_ -= static_cast<double>(bytes.size());
+    const Message& message = queue_.front();
+    bus_.publish(message.channel, message.bytes);
+    budget_ -= static_cast<double>(message.bytes.size());
+    const auto waiting = waiting_.find(message.request);
+    if (--waiting->second == 0) waiting_.erase(waiting);
     queue_.pop_front();
   }
 }

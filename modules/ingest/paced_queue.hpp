@@ -2,9 +2,9 @@
 
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <memory>
 #include <string>
-#include <utility>
 
 #include "bus/bus.hpp"
 
@@ -16,16 +16,25 @@ class PacedQueue {
  public:
   PacedQueue(Bus& bus, double bytes_per_second);
 
-  void push(std::string channel, Bytes bytes);
+  /// `request` is what the message answers.
+  void push(const std::string& request, std::string channel, Bytes bytes);
+  /// Whether a message that answers this request has not gone out yet.
+  [[nodiscard]] bool waits(const std::string& request) const { return waiting_.contains(request); }
   [[nodiscard]] std::size_t size() const { return queue_.size(); }
 
  private:
+  struct Message {
+    std::string request, channel;
+    Bytes bytes;
+  };
+
   void send_some();
 
   Bus& bus_;
   double bytes_per_step_;
   double budget_ = 0;  ///< bytes that may be sent now; below 0 after a message larger than the budget was
-  std::deque<std::pair<std::string, Bytes>> queue_;
+  std::deque<Message> queue_;
+  std::map<std::string, std::size_t> waiting_;                  ///< messages in the queue, by request
   std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  ///< timers of the bus outlive this
 };
 

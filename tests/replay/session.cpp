@@ -34,7 +34,14 @@ Transform turned(double yaw, const Eigen::Vector3d& position) {
 class Robot {
  public:
   Robot(LockstepBus& air, const std::string& id, int seed, int width)
-      : sender_(air, counters_, {"in/" + id, kResolution, 5e6, air.now()}, map_), seed_(seed) {
+      : sender_(air, counters_, {"in/" + id, kResolution, 5e6, air.now()}, map_),
+        hearer_(air, counters_, {"in/" + id, kResolution}, {[](const auto&) {}, [](BrickIndex, Brick) {}, {}}),
+        seed_(seed) {
+    const StreamChannels channels("in/" + id);
+    listen<BrickPacket>(air, counters_, "hearer", channels.bricks,
+                        [this](const std::string&, const BrickPacket& packet) { hearer_.on_packet(packet); });
+    listen<BrickDigest>(air, counters_, "hearer", channels.digest,
+                        [this](const std::string&, const BrickDigest& digest) { hearer_.on_digest(digest); });
     for (int x = 0; x < width; ++x) {
       for (int y = 0; y < 12; ++y) {
         for (int z = 0; z < kStoreys; ++z) map_.set({x, y, z}, brick_of_room({x, y, z}, seed));
@@ -53,11 +60,12 @@ class Robot {
   Counters counters_;
   BrickMap map_;
   BrickSender sender_;
+  BrickReceiver hearer_;  ///< asks for what it misses, as ingest did when this was recorded
   int seed_;
 };
 
 CloudMessage scan(std::int64_t utime, std::int64_t sequence) {
-  CloudMessage cloud{utime, sequence, "scan", Transform::Identity(), 10.0, {}};
+  CloudMessage cloud{utime, 1, sequence, "scan", Transform::Identity(), 10.0, {}};
   cloud.T_agent_sensor->translation() = Eigen::Vector3d(0, 0, 1);
   for (int i = 0; i < 500; ++i) {
     const double angle = i * 0.0125 + 0.001 * static_cast<double>(sequence);

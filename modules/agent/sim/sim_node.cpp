@@ -24,7 +24,7 @@ SimNode::SimNode(const NodeContext& context, const Config& config)
       boot_id_(context.boot_id),
       world_(make_warehouse(config.seed)) {
   if (config.kind == AgentKind::kCamera) {
-    cloud_out_.emplace(bus_, counters_, config.agent, [this] { begin(); });
+    cloud_out_.emplace(bus_, counters_, config.agent, boot_id_, [this] { begin(); });
   } else {
     const SubmapPublisher::Config stream{config.agent, resolution_, context.site.stream.bytes_per_second, boot_id_};
     submap_out_.emplace(bus_, counters_, stream, [this] { begin(); });

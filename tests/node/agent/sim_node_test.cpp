@@ -36,7 +36,7 @@ class Simulated : public testing::Test {
   }
 
   void reset() {
-    bus_.publish("in/agent_request", encode(AgentRequest{"r1", "a", AgentRequest::Op::kReset}, bus_.now()));
+    bus_.publish("out/frame_over/a", encode(FrameOver{bus_.now(), receiver_.frame_id()}));
     bus_.deliver();
   }
 

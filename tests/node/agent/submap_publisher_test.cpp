@@ -56,8 +56,8 @@ class Publishing : public testing::Test {
     bus_.deliver();
   }
 
-  void send(const AgentRequest& request) {
-    bus_.publish("in/agent_request", encode(request, bus_.now()));
+  void frame_is_over(const std::string& agent, const std::string& frame_id) {
+    bus_.publish("out/frame_over/" + agent, encode(FrameOver{bus_.now(), frame_id}));
     bus_.deliver();
   }
 
@@ -150,20 +150,32 @@ TEST_F(Publishing, PosesCarryTheFrame) {
   EXPECT_TRUE(pose_->T_agent_base.isApprox(T));
 }
 
-TEST_F(Publishing, TellsTheRobotOfItsResetOnce) {
+TEST_F(Publishing, TellsTheRobotOnceThatItsFrameIsOver) {
+  frame_is_over("robot1", "f1");
+  EXPECT_EQ(resets_, 0) << "it has begun none";
   publisher_.begin_frame("f1");
-  send({"r1", "robot2", AgentRequest::Op::kReset});
-  send({"r2", "robot1", AgentRequest::Op::kRemove});
+  frame_is_over("robot2", "f1");
+  frame_is_over("robot1", "f0");
   EXPECT_EQ(resets_, 0);
-  send({"r3", "robot1", AgentRequest::Op::kReset});
-  send({"r3", "robot1", AgentRequest::Op::kReset});
+  frame_is_over("robot1", "f1");
+  frame_is_over("robot1", "f1");
   EXPECT_EQ(resets_, 1);
-  send({"r4", "robot1", AgentRequest::Op::kReset});
+  publisher_.begin_frame("f2");
+  frame_is_over("robot1", "f1");
+  EXPECT_EQ(resets_, 1) << "late";
+  frame_is_over("robot1", "f2");
   EXPECT_EQ(resets_, 2);
-  bus_.publish("in/agent_request", Bytes{1, 2, 3});
+  bus_.publish("out/frame_over/robot1", Bytes{1, 2, 3});
   bus_.deliver();
   EXPECT_EQ(resets_, 2);
-  EXPECT_EQ(counters_.get("refused.in/agent_request.MALFORMED"), 1);
+  EXPECT_EQ(counters_.get("refused.out/frame_over/robot1.MALFORMED"), 1);
+}
+
+TEST_F(Publishing, APersonsWishAloneResetsNothing) {
+  publisher_.begin_frame("f1");
+  bus_.publish("in/agent_request", encode(AgentRequest{"r1", "robot1", AgentRequest::Op::kReset}, bus_.now()));
+  bus_.deliver();
+  EXPECT_EQ(resets_, 0) << "ingest may refuse it";
 }
 
 TEST(ResetListener, HearsNothingAfterItsEnd) {
@@ -171,9 +183,10 @@ TEST(ResetListener, HearsNothingAfterItsEnd) {
   Counters counters;
   int resets = 0;
   {
-    const ResetListener listener(bus, counters, "robot1", [&] { ++resets; });
+    ResetListener listener(bus, counters, "robot1", [&] { ++resets; });
+    listener.begin_frame("f");
   }
-  bus.publish("in/agent_request", encode(AgentRequest{"r1", "robot1", AgentRequest::Op::kReset}, kStart));
+  bus.publish("out/frame_over/robot1", encode(FrameOver{kStart, "f"}));
   bus.deliver();
   EXPECT_EQ(resets, 0);
 }

@@ -34,7 +34,7 @@ TEST_F(IngestNodeTest, octomaps_and_clouds_are_streamed_on) {
   say_octomap("robot1", "f", some_map(20));
   EXPECT_EQ(start_->follower["robot1"].map, some_map(20));
 
-  const CloudMessage cloud{1, 3, "g", std::nullopt, 0, {{0.05F, 0.05F, 0.05F}, {1, NAN, 1}}};
+  const CloudMessage cloud{1, 7, 3, "g", std::nullopt, 0, {{0.05F, 0.05F, 0.05F}, {1, NAN, 1}}};
   start_->say("in/robot2/cloud", cloud);
   start_->say("in/robot2/cloud", cloud);
   start_->run(2);
@@ -52,14 +52,14 @@ TEST_F(IngestNodeTest, all_is_back_after_a_restart_when_every_sender_has_gone) {
     start_->run(2);
   }
   say_octomap("robot2", "f", some_map(200, 2));
-  start_->say("in/robot3/cloud", CloudMessage{1, 0, "g", std::nullopt, 0, {{0.05F, 0.05F, 0.05F}}});
+  start_->say("in/robot3/cloud", CloudMessage{1, 7, 0, "g", std::nullopt, 0, {{0.05F, 0.05F, 0.05F}}});
   restart();
   start_->run(2);
   EXPECT_EQ(start_->follower["robot1"].map, some_map(300, 1));
   EXPECT_EQ(start_->follower["robot1"].frame_id, "boot-1");
   EXPECT_EQ(start_->follower["robot2"].map, some_map(200, 2));
   EXPECT_EQ(start_->follower["robot3"].map.known_count(), 1U);
-  start_->say("in/robot3/cloud", CloudMessage{1, 0, "g", std::nullopt, 0, {{9.05F, 0.05F, 0.05F}}});
+  start_->say("in/robot3/cloud", CloudMessage{1, 7, 0, "g", std::nullopt, 0, {{9.05F, 0.05F, 0.05F}}});
   EXPECT_EQ(start_->counters.get("duplicates.robot3"), 1) << "clouds go on being counted";
 }
 
@@ -126,6 +126,36 @@ TEST_F(IngestNodeTest, a_live_stream_is_not_overrun_by_an_octomap_but_a_silent_o
   EXPECT_EQ(start_->follower["robot1"].map, some_map(20));
 }
 
+TEST_F(IngestNodeTest, what_a_full_layer_refused_is_asked_for_when_there_is_room) {
+  VoxelMask all;
+  all.fill(~std::uint64_t{0});
+  site_.ingest.max_known_voxels = 10 * kBrickVoxels;
+  restart();
+  Robot robot(*start_, "robot1", "boot-1", BrickMap(), site_.resolution);
+  for (int i = 0; i < 12; ++i) robot.set({i, 0, 0}, Brick::uniform(all, kFree));
+  start_->run(5);
+  EXPECT_EQ(start_->follower["robot1"].map.brick_count(), 10U);
+  EXPECT_EQ(start_->counters.get("lacking.robot1"), 1);
+  const int requests = start_->requests;
+  start_->run(5);
+  EXPECT_EQ(start_->requests, requests) << "there is no room to ask for";
+  for (int i = 0; i < 5; ++i) robot.set({i, 0, 0}, Brick{});
+  start_->run(5);
+  EXPECT_EQ(start_->follower["robot1"].map, robot.map());
+  EXPECT_EQ(start_->counters.get("lacking.robot1"), 0);
+}
+
+TEST_F(IngestNodeTest, a_camera_robot_that_started_again_goes_on_in_its_frame) {
+  CloudMessage cloud{1, 7, 5, "g", std::nullopt, 0, {{0.05F, 0.05F, 0.05F}}};
+  start_->say("in/robot1/cloud", cloud);
+  cloud.boot_id = 8;
+  cloud.sequence = 0;
+  cloud.points[0].x() = 1.05F;
+  start_->say("in/robot1/cloud", cloud);
+  start_->run(2);
+  EXPECT_EQ(start_->follower["robot1"].map.known_count(), 2U);
+}
+
 TEST_F(IngestNodeTest, agents_beyond_the_limit_are_refused_by_name) {
   site_.ingest.max_agents = 2;
   restart();
@@ -134,7 +164,7 @@ TEST_F(IngestNodeTest, agents_beyond_the_limit_are_refused_by_name) {
   start_->run(2);
   EXPECT_EQ(start_->counters.get("agents"), 2);
   EXPECT_EQ(start_->counters.get("refused.in/c/octomap.TOO_LARGE"), 1);
-  EXPECT_GT(start_->counters.get("refused.in/d/bricks.TOO_LARGE"), 0);
+  EXPECT_GT(start_->counters.get("refused.in/d/digest.TOO_LARGE"), 0);
 }
 
 TEST_F(IngestNodeTest, no_bytes_harm_it) {

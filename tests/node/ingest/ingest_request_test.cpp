@@ -1,5 +1,7 @@
 #include <fstream>
 
+#include "agent/cloud_publisher.hpp"
+#include "agent/submap_publisher.hpp"
 #include "core/downsample.hpp"
 #include "station.hpp"
 
@@ -32,6 +34,76 @@ TEST_F(IngestRequestTest, a_reset_drops_the_layer_and_waits_for_a_new_frame) {
   start_->run(1);
   EXPECT_EQ(start_->follower["robot1"].map, robot.map());
   EXPECT_EQ(start_->follower["robot1"].frame_id, "boot-2");
+}
+
+/// A bus that loses the first message that its stations would hear on `out/frame_over/...`.
+class HardOfHearing final : public Bus {
+ public:
+  explicit HardOfHearing(Bus& air) : air_(air) {}
+  using Bus::subscribe;
+  void subscribe(const std::string& channel_regex, Handler handler, int queued) override {
+    const auto hear = [this, handler](const std::string& channel, auto bytes) {
+      if (!channel.starts_with("out/frame_over/") || said_over++ > 0) handler(channel, bytes);
+    };
+    air_.subscribe(channel_regex, hear, queued);
+  }
+  void publish(const std::string& channel, std::span<const std::uint8_t> bytes) override {
+    air_.publish(channel, bytes);
+  }
+  void every(std::int64_t period, Task task) override { air_.every(period, std::move(task)); }
+  [[nodiscard]] std::int64_t now() const override { return air_.now(); }
+
+  int said_over = 0;
+
+ private:
+  Bus& air_;
+};
+
+TEST_F(IngestRequestTest, a_robot_begins_anew_though_the_first_word_of_its_reset_was_lost) {
+  HardOfHearing bus(start_->bus);
+  int resets = 0;
+  SubmapPublisher* self = nullptr;
+  SubmapPublisher robot(bus, start_->counters, {"robot1", site_.resolution, 5e6, start_->bus.now()}, [&] {
+    ++resets;
+    self->begin_frame("boot-2");
+    self->publish(some_map(20));
+  });
+  self = &robot;
+  robot.begin_frame("boot-1");
+  robot.publish(some_map(50));
+  start_->run(1.5);
+  EXPECT_TRUE(start_->ask(AgentRequest{"q1", "robot1", AgentRequest::Op::kReset}).ok);
+  EXPECT_EQ(bus.said_over, 1);
+  EXPECT_EQ(resets, 0);
+  start_->run(3);
+  EXPECT_EQ(resets, 1);
+  EXPECT_EQ(start_->follower["robot1"].frame_id, "boot-2");
+  EXPECT_EQ(start_->follower["robot1"].map, some_map(20));
+  const int said = bus.said_over;
+  start_->run(5);
+  EXPECT_EQ(bus.said_over, said) << "it is over and done with";
+}
+
+TEST_F(IngestRequestTest, a_robot_that_was_off_at_its_reset_hears_of_it_when_it_is_back) {
+  say_octomap("robot1", "f", some_map(50));
+  EXPECT_TRUE(start_->ask(AgentRequest{"q1", "robot1", AgentRequest::Op::kReset}).ok);
+  restart();
+  int resets = 0;
+  CloudPublisher robot(start_->bus, start_->counters, "robot1", 7, [&] { ++resets; });
+  robot.begin_frame("f");
+  for (int i = 0; i < 10; ++i) {
+    robot.publish(Transform::Identity(), 0, {{1, 1, 1}}, start_->bus.now());
+    start_->run(0.2);
+  }
+  EXPECT_EQ(resets, 1);
+}
+
+TEST_F(IngestRequestTest, a_reset_that_is_refused_reaches_no_robot) {
+  int resets = 0;
+  CloudPublisher robot(start_->bus, start_->counters, "robot1", 7, [&] { ++resets; });
+  robot.begin_frame("f");
+  EXPECT_FALSE(start_->ask(AgentRequest{"q1", "robot1", AgentRequest::Op::kReset}).ok);  // sent nothing so far
+  EXPECT_EQ(resets, 0);
 }
 
 TEST_F(IngestRequestTest, a_reset_holds_after_a_restart) {
@@ -164,6 +236,27 @@ TEST_F(IngestRequestTest, a_coarse_view_comes_in_parts_that_fit_a_frame) {
   EXPECT_GT(start_->parts.size(), 2U);
   EXPECT_EQ(points, downsample(map, site_.resolution, 0.5));
   EXPECT_EQ(answer.count, static_cast<std::int64_t>(points.size()));
+}
+
+TEST_F(IngestRequestTest, a_coarse_view_that_is_on_its_way_is_not_sent_twice) {
+  site_.stream.bytes_per_second = 10'000;
+  restart();
+  say_octomap("robot1", "f", some_map(400));
+  start_->run(5);
+  const DownsampleRequest request{"q1", "robot1", 0.5};
+  for (int i = 0; i < 5; ++i) {
+    start_->bus.publish("in/downsample", encode(request, start_->bus.now()));
+    start_->run(0.1);
+  }
+  start_->run(20);
+  ASSERT_FALSE(start_->parts.empty());
+  EXPECT_GT(start_->parts.front().parts, 2);
+  EXPECT_EQ(start_->parts.size(), static_cast<std::size_t>(start_->parts.front().parts));
+  EXPECT_EQ(start_->answers["q1"].size(), 1U);
+  start_->parts.clear();
+  start_->bus.publish("in/downsample", encode(request, start_->bus.now()));
+  start_->run(10);
+  EXPECT_FALSE(start_->parts.empty()) << "asked again later: parts may have been lost";
 }
 
 TEST_F(IngestRequestTest, a_coarse_view_needs_an_agent_and_a_sane_cell) {

@@ -134,7 +134,7 @@ class IngestStation : public ::testing::Test {
   void say_octomap(const std::string& id, const std::string& frame_id, const BrickMap& map) {
     const auto data = write_octomap_data(map, OctomapFormat::kFull).value();
     start_->say("in/" + id + "/octomap", OctomapMessage{start_->bus.now(), frame_id, site_.resolution, false, data});
-    start_->run(0.2);
+    start_->run(0.5);
   }
 
   /// `bricks` bricks that all differ.

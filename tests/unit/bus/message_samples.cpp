@@ -42,12 +42,13 @@ Transform some_transform() {
 
 const std::vector<MessageSample>& message_samples() {
   static const std::vector<MessageSample> kSamples = {
-      sample("brick_packet_t", BrickPacket{kTime, 17, "map", 0.05, 3, 9, 2, {1, 2, 3, 255, 0}}),
-      sample("brick_digest_t", BrickDigest{kTime, 17, "map", 0.05, 12, 9, 0xFFEEDDCCBBAA9988}),
+      sample("brick_packet_t", BrickPacket{kTime, 17, "map", 0.05, 3, 9, 2, {1, 2, 3, 255, 0}, 4}),
+      sample("brick_digest_t", BrickDigest{kTime, 17, "map", 0.05, 12, 9, 0xFFEEDDCCBBAA9988, 4}),
       sample("brick_request_t", BrickRequest{17, {{1, 2}, {5, 5}, {9, 1'000'000'000'000}}}),
       sample("octomap_t", OctomapMessage{kTime, "odom", 0.1, false, {0, 1, 2, 3}}),
       sample("cloud_t", CloudMessage{kTime, 17, 5, "odom", some_transform(), 12.5, {{1, 2, 3}, {-4, 5.5F, 6}}}),
       sample("agent_pose_t", AgentPose{"", "odom", some_transform(), kTime}),
+      sample("frame_over_t", FrameOver{kTime, "odom"}),
       sample("frame_over_t", FrameOver{kTime, "odom"}),
       sample("map_pose_t", MapPose{kTime, "robot1", some_transform()}),
       sample("set_transform_t", TransformRequest{"r-1", "Zoë", "robot1", "odom", some_transform()}),

@@ -25,6 +25,10 @@ class IngestTest : public ::testing::Test {
     return ingest_.take_octomap(id, frame, octomap_of(map, format), format, kResolution);
   }
 
+  Result<CloudChange> cloud(const std::string& frame, CloudNumber number, const Scan& scan, std::int64_t now = 1) {
+    return ingest_.take_cloud("robot1", frame, number, scan, now);
+  }
+
   Ingest ingest_{kConfig};
   const BrickMap wall_ = box({0, 0, 0}, {20, 0, 9}, kOccupied);
   const BrickMap floor_ = box({-9, -9, 0}, {20, 9, 0}, kFree);
@@ -45,7 +49,7 @@ TEST_F(IngestTest, the_first_octomap_makes_the_agent) {
   ASSERT_NE(agent, nullptr);
   EXPECT_EQ(agent->layer, wall_);
   EXPECT_EQ(agent->frame_id, "start-1");
-  EXPECT_EQ(agent->known, 21 * 10);
+  EXPECT_EQ(agent->known(), 21 * 10);
 }
 
 TEST_F(IngestTest, an_octomap_sent_again_changes_nothing) {
@@ -65,7 +69,7 @@ TEST_F(IngestTest, an_octomap_replaces_all_and_touches_only_what_differs) {
   ASSERT_TRUE(change);
   EXPECT_EQ(change->bricks, (std::vector<BrickIndex>{{1, 0, 0}, {2, 0, 0}, {5, 0, 0}}));
   EXPECT_EQ(ingest_.find("robot1")->layer, next);
-  EXPECT_EQ(ingest_.find("robot1")->known, static_cast<std::int64_t>(next.known_count()));
+  EXPECT_EQ(ingest_.find("robot1")->known(), static_cast<std::int64_t>(next.known_count()));
 }
 
 TEST_F(IngestTest, another_resolution_is_brought_to_the_sites) {
@@ -114,9 +118,9 @@ TEST_F(IngestTest, a_stream_sets_single_bricks) {
   const Brick brick = Brick::uniform({3}, kOccupied);
   EXPECT_TRUE(ingest_.set_brick("robot1", {1, 2, 3}, brick).value());
   EXPECT_FALSE(ingest_.set_brick("robot1", {1, 2, 3}, brick).value());
-  EXPECT_EQ(ingest_.find("robot1")->known, 2);
+  EXPECT_EQ(ingest_.find("robot1")->known(), 2);
   EXPECT_TRUE(ingest_.set_brick("robot1", {1, 2, 3}, Brick{}).value());
-  EXPECT_EQ(ingest_.find("robot1")->known, 0);
+  EXPECT_EQ(ingest_.find("robot1")->known(), 0);
   EXPECT_TRUE(ingest_.find("robot1")->layer.empty());
 }
 
@@ -145,22 +149,22 @@ TEST_F(IngestTest, within_a_frame_a_stream_has_the_last_word) {
 
 TEST_F(IngestTest, clouds_add_up) {
   const Scan scan{std::nullopt, 0, {{0.05F, 0.05F, 0.05F}, {1.05F, 0.05F, 0.05F}}};
-  const auto first = ingest_.take_cloud("robot1", "f", 0, scan);
+  const auto first = cloud("f", {1, 0}, scan);
   ASSERT_TRUE(first) << first.error().message;
   EXPECT_TRUE(first->change.new_frame);
   EXPECT_EQ(first->change.bricks, (std::vector<BrickIndex>{{0, 0, 0}, {1, 0, 0}}));
-  const auto second = ingest_.take_cloud("robot1", "f", 1, scan);
+  const auto second = cloud("f", {1, 1}, scan);
   ASSERT_TRUE(second);
   EXPECT_FALSE(second->change.new_frame);
   EXPECT_EQ(second->lost, 0);
   EXPECT_EQ(ingest_.find("robot1")->layer.at({10, 0, 0}), 2 * kHit);
-  EXPECT_EQ(ingest_.find("robot1")->known, 2);
+  EXPECT_EQ(ingest_.find("robot1")->known(), 2);
 }
 
 TEST_F(IngestTest, rays_from_a_known_sensor_free_space) {
   Transform T_agent_sensor = Transform::Identity();
   T_agent_sensor.translation() = Eigen::Vector3d(0.05, 0.05, 0.05);
-  ASSERT_TRUE(ingest_.take_cloud("robot1", "f", 0, {T_agent_sensor, 0, {{1.05F, 0.05F, 0.05F}}}));
+  ASSERT_TRUE(cloud("f", {1, 0}, {T_agent_sensor, 0, {{1.05F, 0.05F, 0.05F}}}));
   const BrickMap& layer = ingest_.find("robot1")->layer;
   EXPECT_EQ(layer.at({5, 0, 0}), kMiss);
   EXPECT_EQ(layer.at({10, 0, 0}), kHit);
@@ -168,30 +172,44 @@ TEST_F(IngestTest, rays_from_a_known_sensor_free_space) {
 
 TEST_F(IngestTest, clouds_that_are_lost_or_come_twice_are_known) {
   const Scan scan{std::nullopt, 0, {{0.05F, 0.05F, 0.05F}}};
-  EXPECT_EQ(ingest_.take_cloud("robot1", "f", 2, scan).value().lost, 2);
-  EXPECT_TRUE(ingest_.take_cloud("robot1", "f", 2, scan).value().duplicate);
-  EXPECT_TRUE(ingest_.take_cloud("robot1", "f", 0, scan).value().duplicate);
+  EXPECT_EQ(cloud("f", {1, 2}, scan).value().lost, 2);
+  EXPECT_TRUE(cloud("f", {1, 2}, scan).value().duplicate);
+  EXPECT_TRUE(cloud("f", {1, 0}, scan).value().duplicate);
   EXPECT_EQ(ingest_.find("robot1")->layer.at({0, 0, 0}), kHit) << "a duplicate adds nothing";
-  EXPECT_EQ(ingest_.take_cloud("robot1", "f", 5, scan).value().lost, 2);
-  EXPECT_EQ(ingest_.take_cloud("robot1", "g", 0, scan).value().lost, 0) << "a new frame counts anew";
-  EXPECT_EQ(code_of(ingest_.take_cloud("robot1", "g", -1, scan)), Code::kBadRequest);
-  EXPECT_EQ(code_of(ingest_.take_cloud("robot1", "g", std::numeric_limits<std::int64_t>::max(), scan)),
-            Code::kBadRequest);
+  EXPECT_EQ(cloud("f", {1, 5}, scan).value().lost, 2);
+  EXPECT_EQ(cloud("g", {1, 0}, scan).value().lost, 0) << "a new frame counts anew";
+  EXPECT_EQ(code_of(cloud("g", {1, -1}, scan)), Code::kBadRequest);
+  EXPECT_EQ(code_of(cloud("g", {1, std::numeric_limits<std::int64_t>::max()}, scan)), Code::kBadRequest);
+}
+
+TEST_F(IngestTest, a_sender_that_started_again_counts_its_clouds_anew) {
+  const Scan scan{std::nullopt, 0, {{0.05F, 0.05F, 0.05F}}};
+  const std::int64_t second = 1'000'000;
+  ASSERT_TRUE(cloud("f", {100, 7}, scan, 10 * second));
+  const auto next = cloud("f", {200, 0}, scan, 11 * second);
+  ASSERT_TRUE(next) << next.error().message;
+  EXPECT_FALSE(next->duplicate);
+  EXPECT_FALSE(next->change.new_frame);
+  EXPECT_EQ(next->lost, 0);
+  EXPECT_EQ(cloud("f", {200, 2}, scan, 11 * second).value().lost, 1);
+  EXPECT_EQ(code_of(cloud("f", {100, 8}, scan, 12 * second)), Code::kStale) << "was long under way";
+  EXPECT_EQ(ingest_.find("robot1")->layer.at({0, 0, 0}), 3 * kHit);
+  EXPECT_TRUE(cloud("f", {100, 0}, scan, 15 * second)) << "its clock went back";
 }
 
 TEST_F(IngestTest, a_bad_cloud_changes_nothing) {
   const Scan bad{std::nullopt, -1.0, {{0.05F, 0.05F, 0.05F}}};
-  EXPECT_FALSE(ingest_.take_cloud("robot1", "f", 0, bad));
+  EXPECT_FALSE(cloud("f", {1, 0}, bad));
   EXPECT_TRUE(ingest_.agents().empty());
   ASSERT_TRUE(octomap("robot1", "f", wall_));
-  EXPECT_FALSE(ingest_.take_cloud("robot1", "g", 0, bad));
+  EXPECT_FALSE(cloud("g", {1, 0}, bad));
   EXPECT_EQ(ingest_.find("robot1")->frame_id, "f");
 }
 
 TEST_F(IngestTest, clouds_add_to_an_octomap_of_their_frame) {
   ASSERT_TRUE(octomap("robot1", "f", floor_));
-  ASSERT_TRUE(ingest_.take_cloud("robot1", "f", 0, {std::nullopt, 0, {{0.05F, 0.05F, 3.05F}}}));
-  EXPECT_EQ(ingest_.find("robot1")->known, static_cast<std::int64_t>(floor_.known_count()) + 1);
+  ASSERT_TRUE(cloud("f", {1, 0}, {std::nullopt, 0, {{0.05F, 0.05F, 3.05F}}}));
+  EXPECT_EQ(ingest_.find("robot1")->known(), static_cast<std::int64_t>(floor_.known_count()) + 1);
 }
 
 TEST_F(IngestTest, after_a_reset_the_frame_is_over_for_good) {
@@ -241,6 +259,7 @@ TEST_F(IngestTest, a_file_becomes_an_agent) {
   EXPECT_EQ(change.bricks, wall_.sorted_bricks());
   EXPECT_EQ(ingest_.find("archive")->layer, wall_);
   EXPECT_EQ(code_of(ingest_.from_file("archive", "hall", file)), Code::kExists);
+  EXPECT_EQ(code_of(ingest_.admit("archive", "hall", Source::kFile)), Code::kExists) << "before a file is read";
   EXPECT_TRUE(ingest_.from_file("other", std::string(40, 'x'), file)) << "the longest name of a map";
 }
 
@@ -274,8 +293,8 @@ RC_GTEST_PROP(IngestProperty, the_changes_tell_everything, ()) {
         break;
       }
       case 2:
-        if (auto taken =
-                ingest.take_cloud("a", frame, step, {std::nullopt, 0, {{0.1F * low.x, 0.1F * low.y, 0.05F}}})) {
+        if (auto taken = ingest.take_cloud("a", frame, {1, step},
+                                           {std::nullopt, 0, {{0.1F * low.x, 0.1F * low.y, 0.05F}}}, step)) {
           apply(taken->change);
         }
         break;
@@ -290,7 +309,7 @@ RC_GTEST_PROP(IngestProperty, the_changes_tell_everything, ()) {
     }
     const Agent* agent = ingest.find("a");
     const BrickMap layer = agent != nullptr ? agent->layer : BrickMap();
-    const std::int64_t known = agent != nullptr ? agent->known : 0;
+    const std::int64_t known = agent != nullptr ? agent->known() : 0;
     RC_ASSERT(mirror.map() == layer);
     RC_ASSERT(known == static_cast<std::int64_t>(layer.known_count()));
   }

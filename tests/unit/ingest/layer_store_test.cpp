@@ -36,7 +36,8 @@ class LayerStoreTest : public ::testing::Test {
     store_.emplace(folder_ / "ingest.db", kResolution);
   }
   void octomap(const std::string& id, const std::string& frame, const BrickMap& map) {
-    store_->note(id, ingest_.take_octomap(id, frame, octomap_of(map), OctomapFormat::kFull, kResolution).value());
+    const Change change = ingest_.take_octomap(id, frame, octomap_of(map), OctomapFormat::kFull, kResolution).value();
+    store_->note(id, *ingest_.find(id), change);
   }
   void flush() { ASSERT_TRUE(store_->flush(ingest_.agents())); }
   /// What a new start finds.
@@ -67,7 +68,7 @@ TEST_F(LayerStoreTest, layers_come_back_whole) {
   EXPECT_TRUE(loaded.refused.empty());
   EXPECT_EQ(loaded.agents[0].first, "robot1");
   EXPECT_EQ(loaded.agents[0].second.layer, wall_);
-  EXPECT_EQ(loaded.agents[0].second.known, static_cast<std::int64_t>(wall_.known_count()));
+  EXPECT_EQ(loaded.agents[0].second.known(), static_cast<std::int64_t>(wall_.known_count()));
   EXPECT_EQ(loaded.agents[0].second.frame_id, "f");
   EXPECT_EQ(loaded.agents[0].second.source, Source::kOctomap);
   EXPECT_EQ(loaded.agents[1].second.layer, floor_);
@@ -109,6 +110,96 @@ TEST_F(LayerStoreTest, a_new_frame_replaces_the_rows_of_the_old_one) {
   EXPECT_EQ(loaded.agents.at(0).second.layer, box({0, 0, 0}, {1, 1, 1}, kFree));
 }
 
+/// A layer of so many bricks that differ by `value`.
+BrickMap bricks(int count, LogOdds value) {
+  BrickMap map;
+  for (int i = 0; i < count; ++i) map.set({i % 50, i / 50, 0}, Brick::uniform({1}, value));
+  return map;
+}
+
+TEST_F(LayerStoreTest, a_large_layer_takes_several_slices_and_the_old_one_stands_until_the_last) {
+  const auto large = static_cast<int>(5 * LayerStore::kSlice / 2);
+  for (const char* frame : {"f", "g"}) {
+    octomap("robot1", frame, wall_);
+    flush();
+    octomap("robot1", frame, bricks(large, kFree));  // "f": the first; "g": within its frame
+    octomap("robot2", frame, floor_);
+    for (int slice = 1; slice < 3; ++slice) {
+      ASSERT_TRUE(store_->write_some(ingest_.agents()));
+      EXPECT_FALSE(store_->is_flushed());
+    }
+    const fs::path copy = folder_ / "copy";  // what a kill at this moment would leave
+    fs::create_directories(copy);
+    for (const char* file : {"ingest.db", "ingest.db-wal"}) {
+      fs::copy_file(folder_ / file, copy / file, fs::copy_options::overwrite_existing);
+    }
+    LayerStore survivor(copy / "ingest.db", kResolution);
+    auto loaded = survivor.load().value();
+    ASSERT_GE(loaded.agents.size(), 1U);
+    EXPECT_EQ(loaded.agents[0].second.layer, wall_) << "whole, as it was before";
+    EXPECT_FALSE(survivor.is_idle()) << "what was half written is void";
+    for (int i = 0; i < 10 && !survivor.is_idle(); ++i) ASSERT_TRUE(survivor.write_some({}));
+    EXPECT_TRUE(survivor.is_idle());
+    EXPECT_EQ(survivor.load().value().agents[0].second.layer, wall_);
+    flush();
+  }
+  const auto loaded = reload();
+  EXPECT_EQ(loaded.agents[0].second.layer, bricks(large, kFree));
+  EXPECT_EQ(loaded.agents[0].second.frame_id, "g");
+  EXPECT_EQ(loaded.agents[1].second.layer, floor_);
+}
+
+TEST_F(LayerStoreTest, what_changes_while_a_layer_is_written_is_in_it) {
+  const auto large = static_cast<int>(2 * LayerStore::kSlice);
+  octomap("robot1", "f", bricks(large, kFree));
+  ASSERT_TRUE(store_->write_some(ingest_.agents()));
+  octomap("robot1", "f", bricks(large - 10, kOccupied));
+  flush();
+  EXPECT_EQ(reload().agents.at(0).second.layer, bricks(large - 10, kOccupied));
+  octomap("robot1", "g", bricks(large, kFree));
+  ASSERT_TRUE(store_->write_some(ingest_.agents()));
+  octomap("robot1", "h", bricks(large, kOccupied));
+  flush();
+  const auto loaded = reload();
+  EXPECT_EQ(loaded.agents.at(0).second.frame_id, "h");
+  EXPECT_EQ(loaded.agents.at(0).second.layer, bricks(large, kOccupied));
+}
+
+TEST_F(LayerStoreTest, a_busy_agent_does_not_keep_others_from_the_disk) {
+  octomap("a", "f", wall_);
+  octomap("b", "f", floor_);
+  flush();
+  const auto large = static_cast<int>(LayerStore::kSlice);
+  for (int round = 0; round < 2; ++round) {
+    octomap("a", "f", bricks(large, static_cast<LogOdds>(round)));
+    octomap("b", "f", wall_);
+    ASSERT_TRUE(store_->write_some(ingest_.agents()));
+  }
+  EXPECT_EQ(store_->load().value().agents.at(1).second.layer, wall_);
+}
+
+TEST_F(LayerStoreTest, a_reset_in_the_midst_of_writing_leaves_nothing_behind) {
+  octomap("robot1", "f", bricks(static_cast<int>(2 * LayerStore::kSlice), kFree));
+  ASSERT_TRUE(store_->write_some(ingest_.agents()));
+  const Agent after = ingest_.after_reset("robot1").value();
+  ASSERT_TRUE(store_->replace("robot1", &after));
+  ingest_.put("robot1", after);
+  for (int i = 0; i < 10 && !store_->is_idle(); ++i) ASSERT_TRUE(store_->write_some(ingest_.agents()));
+  EXPECT_TRUE(store_->is_idle());
+  open();
+  EXPECT_TRUE(store_->is_idle());
+  EXPECT_TRUE(store_->load().value().agents.at(0).second.layer.empty());
+}
+
+TEST_F(LayerStoreTest, the_numbers_of_clouds_come_back) {
+  const auto taken = ingest_.take_cloud("robot1", "f", {17, 4}, {std::nullopt, 0, {{0.05F, 0.05F, 0.05F}}}, 1).value();
+  store_->note("robot1", *ingest_.find("robot1"), taken.change);
+  flush();
+  const CloudNumber next = reload().agents.at(0).second.next_cloud;
+  EXPECT_EQ(next.boot_id, 17);
+  EXPECT_EQ(next.sequence, 5);
+}
+
 TEST_F(LayerStoreTest, a_reset_is_on_disk_at_once_and_its_frame_stays_dead) {
   octomap("robot1", "f", wall_);
   flush();
@@ -139,8 +230,8 @@ TEST_F(LayerStoreTest, damaged_bricks_are_told_and_the_rest_stands) {
   octomap("robot2", "f", floor_);
   flush();
   tamper(
-      "UPDATE brick SET voxels = x'ff' WHERE agent = 1 AND x = 0;"
-      "INSERT INTO brick SELECT 1, 1000000000, y, z, voxels FROM brick WHERE agent = 2 LIMIT 1");
+      "UPDATE brick SET voxels = x'ff' WHERE layer = 1 AND x = 0;"
+      "INSERT INTO brick SELECT 1, 1000000000, y, z, voxels FROM brick WHERE layer = 2 LIMIT 1");
   const auto loaded = reload();
   ASSERT_EQ(loaded.refused.size(), 1U);
   EXPECT_EQ(loaded.refused[0].first, "robot1");
