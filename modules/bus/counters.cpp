@@ -5,9 +5,14 @@
 #include <spdlog/spdlog.h>
 
 namespace concord {
+namespace {
+
+const std::string kRefused = "refused.";
+
+}  // namespace
 
 void Counters::refused(const std::string& what, const Error& error) {
-  std::int64_t& count = slot("refused." + what + "." + name(error.code));
+  std::int64_t& count = slot(kRefused + what + "." + name(error.code));
   ++count;
   if (std::has_single_bit(static_cast<std::uint64_t>(count))) {
     spdlog::warn("refused on {}: {} ({}, {} times)", what, error.message, name(error.code), count);
@@ -22,7 +27,8 @@ std::int64_t Counters::get(const std::string& name) const {
 std::int64_t& Counters::slot(const std::string& name) {
   const auto it = values_.find(name);
   if (it != values_.end()) return it->second;
-  return values_[values_.size() < kMaxNames ? name : "other"];
+  const bool may_be_pooled = name.starts_with(kRefused);
+  return values_[may_be_pooled && values_.size() >= kMaxNames ? kRefused + "other" : name];
 }
 
 }  // namespace concord

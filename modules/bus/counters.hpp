@@ -11,7 +11,8 @@ namespace concord {
 /// What a process has counted since its start; published in its status once a second.
 class Counters {
  public:
-  /// A lab sees every refusal, but a hostile sender must not fill memory: names beyond this many count as "other".
+  /// A lab sees every refusal, but a hostile sender must not fill memory: beyond this many names further refusals count
+  /// as "refused.other".
   static constexpr std::size_t kMaxNames = 200;
 
   void add(const std::string& name, std::int64_t amount = 1) { slot(name) += amount; }

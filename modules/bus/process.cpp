@@ -76,9 +76,12 @@ int run_process(const std::string& process, int argc, char** argv,
     stop_on_signals();
     serve(process, site, make);
     return 0;
-  } catch (const std::exception& e) {
+  } catch (const ConfigError& e) {
     spdlog::error("{}", e.what());
     return 2;
+  } catch (const std::exception& e) {
+    spdlog::error("{}", e.what());
+    return 1;
   }
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "bus/site.hpp"
 #include "core/byte_stream.hpp"
 #include "core/voxel_boxes.hpp"
 
@@ -67,8 +68,8 @@ void MergeStore::check_resolution(double resolution) {
     const auto written = database_.prepare("INSERT INTO site VALUES (?)").run(resolution);
     if (!written) throw std::runtime_error(written.error().message);
   } else if (std::abs(read.real(0) - resolution) > 1e-9) {
-    throw std::runtime_error("the edits in this state folder are for " + std::to_string(read.real(0)) +
-                             " m voxels; set resolution to that, or start with another state folder");
+    throw ConfigError("the edits in this state folder are for " + std::to_string(read.real(0)) +
+                      " m voxels; set resolution to that, or start with another state folder");
   }
 }
 

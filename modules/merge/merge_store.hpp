@@ -14,7 +14,7 @@ namespace concord {
 class MergeStore {
  public:
   /// Opens or creates `file`. Edits count in voxels, so a store belongs to one resolution.
-  /// @throws std::runtime_error if it cannot be opened or was made for another resolution.
+  /// @throws std::runtime_error if it cannot be opened, ConfigError if it was made for another resolution.
   MergeStore(const std::filesystem::path& file, double resolution);
 
   /// Where an agent lies. It holds for one frame of one incarnation (see stream.md): what was removed and comes again

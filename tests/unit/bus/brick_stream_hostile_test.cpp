@@ -121,10 +121,11 @@ TEST(BrickStreamHostile, an_owner_that_moves_on_does_not_pile_up_what_is_gone) {
   StreamWorld world;
   world.begin("frame");
   Copy follower(world.air(), {}, 3, 10'000);
-  for (int x = 0; x < 30'000; ++x) {
-    world.set({x, 0, 0}, noisy_brick(static_cast<std::uint64_t>(x), 2));
-    world.set({x - 100, 0, 0}, Brick());
-    if (x % 100 == 0) world.run(50'000);
+  const auto place = [](int i) { return BrickIndex{i % 1000, i / 1000, 0}; };
+  for (int i = 0; i < 30'000; ++i) {
+    world.set(place(i), noisy_brick(static_cast<std::uint64_t>(i), 2));
+    if (i >= 100) world.set(place(i - 100), Brick());
+    if (i % 100 == 0) world.run(50'000);
   }
   Copy joiner(world.air(), {}, 5, 10'000);
   world.run(10 * kSecond);
@@ -132,6 +133,25 @@ TEST(BrickStreamHostile, an_owner_that_moves_on_does_not_pile_up_what_is_gone) {
     EXPECT_TRUE(copy->receiver().synced());
     EXPECT_TRUE(copy->map() == world.map());
   }
+}
+
+TEST(BrickStreamHostile, senders_of_one_process_share_its_pace) {
+  LockstepBus air(1'000'000);
+  Counters counters;
+  BrickMap map;
+  for (int x = 0; x < 3000; ++x) map.set({x, 0, 0}, noisy_brick(static_cast<std::uint64_t>(x)));
+  std::vector<std::unique_ptr<BrickSender>> senders;
+  std::map<std::string, std::size_t> sent;
+  air.subscribe(".*/bricks", [&](const std::string& channel, auto bytes) { sent[channel] += bytes.size(); });
+  for (const char* stream : {"a", "b", "c"}) {
+    const BrickSender::Config config{stream, kResolution, 3e5, air.now()};
+    senders.push_back(std::make_unique<BrickSender>(air, counters, config, map));
+    senders.back()->begin("frame");
+    air.publish(StreamChannels(stream).need, encode(BrickRequest{config.boot_id, {{1, 3000}}}, air.now()));
+  }
+  air.advance_to(air.now() + 3 * kSecond);
+  EXPECT_LE(sent["a/bricks"] + sent["b/bricks"] + sent["c/bricks"], 3 * 300'000U + 110'000U);
+  for (const char* channel : {"a/bricks", "b/bricks", "c/bricks"}) EXPECT_GE(sent[channel], 100'000U) << channel;
 }
 
 TEST(BrickStreamHostile, another_incarnation_of_the_same_frame_is_not_the_same) {

@@ -142,11 +142,13 @@ TEST(LcmBusUrl, one_that_cannot_be_joined_is_a_configuration_error) {
   EXPECT_THROW(LcmBus("nonsense://", counters), ConfigError);
 }
 
-TEST(CountersTest, names_are_bounded) {
+TEST(CountersTest, refusals_of_hostile_names_are_bounded_and_push_nothing_else_out) {
   Counters counters;
-  for (int i = 0; i < 10'000; ++i) counters.add("name" + std::to_string(i));
-  EXPECT_LE(counters.all().size(), Counters::kMaxNames + 1);
-  EXPECT_EQ(counters.get("other"), 10'000 - static_cast<std::int64_t>(Counters::kMaxNames));
+  for (int i = 0; i < 10'000; ++i) counters.refused("in/x" + std::to_string(i), {Code::kMalformed, "bytes"});
+  counters.set("agents", 3);
+  EXPECT_LE(counters.all().size(), Counters::kMaxNames + 2);
+  EXPECT_EQ(counters.get("refused.other"), 10'000 - static_cast<std::int64_t>(Counters::kMaxNames));
+  EXPECT_EQ(counters.get("agents"), 3);
 }
 
 }  // namespace
