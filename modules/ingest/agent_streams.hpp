@@ -32,7 +32,8 @@ class AgentStreams {
   void end(const std::string& id);
 
  private:
-  [[nodiscard]] std::unique_ptr<BrickSender> make(const std::string& id, const BrickMap& layer);
+  [[nodiscard]] std::unique_ptr<BrickSender> make(const std::string& id, const BrickMap& layer,
+                                                  std::int64_t incarnation);
 
   Bus& bus_;
   Counters& counters_;

@@ -81,6 +81,7 @@ bool Ingest::is_over(const std::string& id, const std::string& frame_id) const {
 
 Agent& Ingest::enter(const std::string& id, const std::string& frame_id, Source source, Change& change) {
   Agent& agent = agents_[id];
+  if (agent.incarnation == 0) agent.incarnation = ++last_incarnation_;
   if (agent.frame_id != frame_id) {
     agent.frame_id = frame_id;
     agent.next_cloud = {};
@@ -157,6 +158,7 @@ Result<Agent> Ingest::after_reset(const std::string& id) const {
   const Agent* agent = find(id);
   if (agent == nullptr) return unknown_agent(id);
   Agent after;
+  after.incarnation = agent->incarnation;
   after.frame_id = agent->frame_id;
   after.source = agent->source;
   after.dead_frames = agent->dead_frames;
@@ -172,6 +174,7 @@ Result<Agent> Ingest::from_file(const std::string& id, const std::string& map, B
   auto import = read_octomap_file(file, config_.resolution, limits_of(config_));
   if (!import) return tl::unexpected(import.error());
   Agent agent;
+  agent.incarnation = last_incarnation_ + 1;
   agent.frame_id = frame_id;
   agent.source = Source::kFile;
   agent.layer = std::move(import->map);
@@ -179,6 +182,7 @@ Result<Agent> Ingest::from_file(const std::string& id, const std::string& map, B
 }
 
 Change Ingest::put(const std::string& id, Agent agent) {
+  last_incarnation_ = std::max(last_incarnation_, agent.incarnation);
   Agent& present = agents_[id];
   Change change;
   change.new_frame = present.frame_id != agent.frame_id;

@@ -22,6 +22,7 @@ struct CloudNumber {
 
 /// One agent's claim about space, in its own frame.
 struct Agent {
+  std::int64_t incarnation = 0;  ///< greater than that of an agent that had its id and was removed
   std::string frame_id;
   Source source = Source::kStream;
   CloudNumber next_cloud;                ///< in this frame; earlier ones of the same start are duplicates
@@ -57,13 +58,14 @@ class Ingest {
     double resolution = 0.05;  ///< of all layers, metres
     std::int64_t max_agents = 64;
     std::int64_t max_known_voxels = 400'000'000;  ///< per agent
+    std::int64_t start = 0;                       ///< of this process, microseconds since 1970
   };
   /// After this without a cloud an older boot_id is believed: the robot's clock went back. Microseconds.
   static constexpr std::int64_t kBootSilence = 3'000'000;
   /// Resets that an agent's memory holds; older dead frames are forgotten.
   static constexpr std::size_t kMaxDeadFrames = 64;
 
-  explicit Ingest(Config config) : config_(config) {}
+  explicit Ingest(Config config) : config_(config), last_incarnation_(config.start) {}
 
   /// Whether content of this frame is taken from this source now. Refused: kBadName, kTooLarge (too many agents),
   /// kBadFrame (the frame was reset, or is no name), kBadRequest (the frame belongs to a brick stream), kExists (a file
@@ -105,6 +107,7 @@ class Ingest {
   Agent& enter(const std::string& id, const std::string& frame_id, Source source, Change& change);
 
   Config config_;
+  std::int64_t last_incarnation_;
   std::map<std::string, Agent> agents_;
 };
 

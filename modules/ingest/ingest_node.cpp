@@ -29,8 +29,9 @@ std::string agent_of(const std::string& channel) {
   return channel.substr(begin, channel.find('/', begin) - begin);
 }
 
-Ingest::Config config_of(const Site& site) {
-  return {site.resolution, site.ingest.max_agents, site.ingest.max_known_voxels};
+Ingest::Config config_of(const NodeContext& context) {
+  const Site& site = context.site;
+  return {site.resolution, site.ingest.max_agents, site.ingest.max_known_voxels, context.boot_id};
 }
 
 }  // namespace
@@ -40,7 +41,7 @@ IngestNode::IngestNode(const NodeContext& context)
       counters_(context.counters),
       site_(context.site),
       process_(context.process),
-      ingest_(config_of(context.site)),
+      ingest_(config_of(context)),
       store_(context.site.state / "ingest.db", context.site.resolution),
       streams_(context.bus, context.counters, context.site.resolution, context.site.stream.bytes_per_second,
                LayerStore::kMaxRemoved),

@@ -20,6 +20,7 @@ CREATE TABLE lattice (
 CREATE TABLE agent (
   id TEXT PRIMARY KEY,
   layer INTEGER NOT NULL UNIQUE,  -- of its bricks; others of the same agent are half written or void
+  incarnation INTEGER NOT NULL,
   frame_id TEXT NOT NULL,
   source INTEGER NOT NULL,        -- Source in ingest.hpp
   boot_id INTEGER NOT NULL,       -- of its clouds, as the next
@@ -59,10 +60,12 @@ std::optional<BrickIndex> checked_index(std::int64_t x, std::int64_t y, std::int
 LayerStore::LayerStore(const std::filesystem::path& file, double resolution)
     : database_(file, kMigrations),
       upsert_agent_(database_.prepare(
-          "INSERT INTO agent VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT (id) DO UPDATE SET layer = excluded.layer, "
-          "frame_id = excluded.frame_id, source = excluded.source, boot_id = excluded.boot_id, "
+          "INSERT INTO agent VALUES (?, ?, ?, ?, ?, ?, ?) ON CONFLICT (id) DO UPDATE SET layer = excluded.layer, "
+          "incarnation = excluded.incarnation, frame_id = excluded.frame_id, source = excluded.source, boot_id = "
+          "excluded.boot_id, "
           "next_sequence = excluded.next_sequence")),
-      select_agents_(database_.prepare("SELECT id, frame_id, source, boot_id, next_sequence FROM agent ORDER BY id")),
+      select_agents_(
+          database_.prepare("SELECT id, frame_id, source, boot_id, next_sequence, incarnation FROM agent ORDER BY id")),
       delete_agent_(database_.prepare("DELETE FROM agent WHERE id = ?")),
       insert_dead_frame_(database_.prepare("INSERT INTO dead_frame VALUES (?, ?, ?)")),
       select_dead_frames_(database_.prepare("SELECT frame_id FROM dead_frame WHERE agent = ? ORDER BY position")),
@@ -233,7 +236,8 @@ Result<void> LayerStore::write_removed(const std::string& id) {
 Result<void> LayerStore::write_row(const std::string& id, const Agent& agent, std::int64_t layer) {
   if (auto done = delete_removed_.run(id); !done) return done;
   const auto& [boot_id, sequence] = agent.next_cloud;
-  return upsert_agent_.run(id, layer, agent.frame_id, static_cast<int>(agent.source), boot_id, sequence);
+  return upsert_agent_.run(id, layer, agent.incarnation, agent.frame_id, static_cast<int>(agent.source), boot_id,
+                           sequence);
 }
 
 Result<void> LayerStore::write_brick(std::int64_t layer, BrickIndex index, const Brick* brick) {
@@ -251,6 +255,7 @@ Result<LayerStore::Loaded> LayerStore::load() {
     agent.frame_id = select_agents_.text(1);
     const std::int64_t source = select_agents_.integer(2);
     agent.next_cloud = {select_agents_.integer(3), select_agents_.integer(4)};
+    agent.incarnation = select_agents_.integer(5);
     if (!is_name(id) || !is_name(agent.frame_id) || source < 0 || source > static_cast<int>(Source::kFile)) {
       loaded.refused.emplace_back(id, damaged(id, "its row is damaged"));
       return;

@@ -158,6 +158,24 @@ TEST_F(IngestRequestTest, a_removed_robot_that_still_sends_is_a_new_agent) {
   EXPECT_EQ(start_->follower["robot1"].map, robot.map());
 }
 
+TEST_F(IngestRequestTest, an_agent_stays_the_same_through_a_restart_but_not_through_a_removal) {
+  const auto incarnation = [this] { return start_->follower["robot1"].receiver->incarnation(); };
+  say_octomap("robot1", "f", some_map(5));
+  const std::int64_t first = incarnation();
+  start_->ask(AgentRequest{"q1", "robot1", AgentRequest::Op::kReset});
+  restart();
+  start_->run(1);
+  EXPECT_EQ(incarnation(), first);
+  start_->ask(AgentRequest{"q2", "robot1", AgentRequest::Op::kRemove});
+  restart();
+  say_octomap("robot1", "f", some_map(5));
+  EXPECT_NE(incarnation(), first);
+  const std::int64_t second = incarnation();
+  start_->ask(AgentRequest{"q3", "robot1", AgentRequest::Op::kRemove});
+  say_octomap("robot1", "f", some_map(5));
+  EXPECT_NE(incarnation(), second);
+}
+
 TEST_F(IngestRequestTest, agents_can_come_and_go_many_times) {
   for (int i = 0; i < 100; ++i) {
     std::string id = "q";
