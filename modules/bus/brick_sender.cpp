@@ -30,6 +30,7 @@ BrickSender::BrickSender(Bus& bus, Counters& counters, Config config, const Bric
     if (request) return on_request(*request);
     counters_.refused(channel, request.error().error);
   });
+  bus_.pace().join(alive_, [this] { return send_one(); });
   bus_.every(kStep, [this, alive = std::weak_ptr(alive_)] {
     if (!alive.expired()) send_now();
   });
@@ -95,25 +96,24 @@ void BrickSender::on_request(const BrickRequest& request) {
 }
 
 void BrickSender::send_now() {
-  const std::int64_t time = bus_.now();
   if (!begun_) return;
-  const double available = bus_.pace().available(time, config_.bytes_per_second);
-  // Half of what there is: the next sender must not starve behind a large one.
-  const double keep = available / 2;
+  const std::int64_t time = bus_.now();
   if (time >= next_digest_) send_digest();
-  const bool had_work = !pending_.empty() || repairs_ready();
-  double spent = 0;
-  while (available - spent > keep && (!pending_.empty() || repairs_ready())) {
-    // In turns: a late joiner who asks for everything must not hold up what is new, nor what is new the joiner.
-    const bool repair = pending_.empty() || (repair_next_ && repairs_ready());
-    repair_next_ = !repair;
-    const auto [first, last] = *(repair ? repairs_ : pending_).intervals().begin();
-    spent += send_packet(first, last);
-  }
-  bus_.pace().spend(spent);
-  if (!had_work || !pending_.empty() || repairs_ready()) return;
+  bus_.pace().serve(time, config_.bytes_per_second);
+  if (!in_pass_ || !pending_.empty() || repairs_ready()) return;
+  in_pass_ = false;
   next_digest_ = std::min(next_digest_, last_digest_ + kDigestAfterPass);
   if (time >= next_digest_) send_digest();
+}
+
+double BrickSender::send_one() {
+  if (!begun_ || (pending_.empty() && !repairs_ready())) return 0;
+  in_pass_ = true;
+  // In turns: a late joiner who asks for everything must not hold up what is new, nor what is new the joiner.
+  const bool repair = pending_.empty() || (repair_next_ && repairs_ready());
+  repair_next_ = !repair;
+  const auto [first, last] = *(repair ? repairs_ : pending_).intervals().begin();
+  return send_packet(first, last);
 }
 
 bool BrickSender::repairs_ready() const { return !repairs_.empty() && bus_.now() >= repairs_due_; }

@@ -88,6 +88,7 @@ class BrickSender {
   void renew_epoch();
   [[nodiscard]] bool repairs_ready() const;
   void enlist(BrickIndex index, std::uint64_t content, bool gone);
+  double send_one();
   double send_packet(std::int64_t first, std::int64_t last);
   void send_digest();
   void on_request(const BrickRequest& request);
@@ -110,6 +111,7 @@ class BrickSender {
   VersionSet repairs_;                       ///< asked for, gathered until repairs_due_
   std::int64_t repairs_due_ = 0;
   bool repair_next_ = false;
+  bool in_pass_ = false;  ///< packets were sent that no digest has followed
   std::int64_t last_digest_ = 0;
   std::int64_t next_digest_ = 0;
   std::int64_t bytes_sent_ = 0;
