@@ -14,6 +14,9 @@
 namespace concord {
 namespace {
 
+/// Cells of a first look: some 10 ms.
+constexpr std::int64_t kLook = 65'536;
+
 using Points = std::vector<Eigen::Vector2d>;
 
 PlanResult refusal(Reason reason, std::string message) {
@@ -158,7 +161,7 @@ PlanResult finish(const Grid& grid, Points points, const End& start, const End& 
 PlanResult no_path(const CellPath& path) {
   if (path.status == CellPath::Status::kGaveUp) {
     return refusal(Reason::kSearchLimit,
-                   "no path within " + std::to_string(path.expanded) + " cells: the map is too big");
+                   "no path within " + std::to_string(kMaxExpanded) + " cells: the map is too big");
   }
   return refusal(Reason::kNoValidPath, "no way through: walls, or space not yet observed, cut the goal off");
 }
@@ -167,6 +170,17 @@ PlanResult no_path(const CellPath& path) {
 void add_line(Region& region, const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
   const int steps = static_cast<int>((to - from).norm() / 4) + 1;
   for (int i = 0; i <= steps; ++i) region.add(cell_of(from + (to - from) * i / steps));
+}
+
+/// Either end may be shut in, most often in a small place: a look from both comes before a long search.
+CellPath find_from_both_ends(FreeSpace& space, std::span<const Anchor> starts, std::span<const Anchor> goals) {
+  const CellPath there = find_path(space, starts, goals, kLook);
+  if (there.status != CellPath::Status::kGaveUp) return there;
+  const CellPath back = find_path(space, goals, starts, kLook);
+  const bool is_shut_in = back.status == CellPath::Status::kNone;
+  CellPath path = is_shut_in ? back : find_path(space, starts, goals, kMaxExpanded);
+  path.expanded = there.expanded + back.expanded + (is_shut_in ? 0 : path.expanded);
+  return path;
 }
 
 PlanResult search(const Grid& grid, const End& start, const End& goal, double radius) {
@@ -191,7 +205,7 @@ PlanResult search(const Grid& grid, const End& start, const End& goal, double ra
                                              " is too narrow a place for a robot of radius " + metres(radius));
     }
   }
-  const CellPath found = find_path(space, near[0], near[1], kMaxExpanded);
+  const CellPath found = find_from_both_ends(space, near[0], near[1]);
   PlanResult result;
   if (found.status != CellPath::Status::kFound) {
     result = no_path(found);

@@ -37,8 +37,8 @@ enum class Reason {
 inline constexpr double kMaxRadius = 10.0;
 inline constexpr double kMaxRadiusCells = 1024.0;
 
-/// Cells a search looks at before it gives up: 80,000 square metres at 5 cm.
-inline constexpr std::int64_t kMaxExpanded = 32'000'000;
+/// Cells a search looks at before it gives up: 10,000 square metres at 5 cm, about a second.
+inline constexpr std::int64_t kMaxExpanded = 4'000'000;
 
 struct PlanResult {
   Reason reason = Reason::kNoMap;

@@ -333,17 +333,36 @@ TEST_F(ActivePath, AClearedMapEndsThePath) {
   EXPECT_EQ(paths[0].status, "NO_MAP");
 }
 
+struct Field {
+  int width, height;
+  double occupied;
+  unsigned cells;  ///< that change at a time
+  Eigen::Vector2d goal;
+  unsigned seeds;
+};
+
+/// In the larger field most ends are shut in somewhere, far from most of what changes.
+class ChangingField : public ActivePath, public testing::WithParamInterface<Field> {};
+INSTANTIATE_TEST_SUITE_P(Sizes, ChangingField,
+                         testing::Values(Field{40, 30, 0.15, 5, {36.2, 25.1}, 30},
+                                         Field{200, 160, 0.38, 300, {120.2, 125.1}, 6}),
+                         [](const auto& field) { return std::to_string(field.param.width); });
+
 /// While the map changes at random, the path that stands is always safe and "no path" always true.
-TEST_F(ActivePath, IsNeverWrongWhileTheMapChanges) {
-  for (unsigned seed = 0; seed < 30; ++seed) {
+TEST_P(ChangingField, TheAnswerIsNeverWrong) {
+  const Field& field = GetParam();
+  for (unsigned seed = 0; seed < field.seeds; ++seed) {
     std::mt19937 random(seed);
-    Rows rows = test::strewn(random, 40, 30, 0.15, 0.02);
-    show(rows);
-    PathRequest request = from_to("seed" + std::to_string(seed), "robot1", Eigen::Vector2d(2.5, 2.5), {36.2, 25.1});
+    Rows rows = test::strewn(random, field.width, field.height, field.occupied, 0.02);
+    const Cell goal{static_cast<std::int32_t>(field.goal.x()), static_cast<std::int32_t>(field.goal.y())};
+    show(with(rows, {{2, 2}, goal}, '.'));
+    PathRequest request = from_to("seed" + std::to_string(seed), "robot1", Eigen::Vector2d(2.5, 2.5), field.goal);
     Path path = ask(request);
     for (int change = 0; change < 60; ++change) {
-      for (int i = 0; i < 5; ++i) rows[random() % rows.size()][random() % 40] = "#.... "[random() % 6];
-      show(rows);
+      for (unsigned i = 0; i < field.cells; ++i) {
+        rows[random() % rows.size()][random() % field.width] = "#.... "[random() % 6];
+      }
+      show(with(rows, {{2, 2}, goal}, '.'));
       for (const Path& next : replan()) {
         EXPECT_EQ(next.plan_number, path.plan_number + 1);
         path = next;

@@ -84,6 +84,20 @@ TEST(Plan, WithAFreeViewTheWayIsStraight) {
   EXPECT_EQ(nowhere.length, 0.0);
 }
 
+TEST(Plan, AnEndThatIsShutInIsFoundSoWithoutLookingEverywhere) {
+  std::vector<std::string> rows(1000, std::string(1000, '.'));
+  for (int i = 0; i <= 20; ++i) rows[500][500 + i] = rows[520][500 + i] = rows[500 + i][500] = rows[500 + i][520] = '#';
+  const Grid grid = sketch(rows);
+  for (const auto& [start, goal] :
+       {std::pair(Eigen::Vector2d(2, 2), Eigen::Vector2d(510, 510)), {{510, 510}, {2, 2}}}) {
+    const PlanResult result = plan(grid, start, goal, 0.4);
+    EXPECT_EQ(result.reason, Reason::kNoValidPath);
+    EXPECT_LT(result.expanded, 100'000);
+    EXPECT_TRUE(result.reached.is_near({63, 63, 0}));
+    EXPECT_FALSE(result.reached.is_near({100, 20, 0}));
+  }
+}
+
 TEST(Plan, DoesNotSlipThroughACornerOrUnknownSpace) {
   const Grid corner = sketch({"..#", ".#.", "#.."});
   EXPECT_EQ(reason(corner, {0.5, 0.5}, {2.5, 2.5}, 0.0), Reason::kNoValidPath);
