@@ -21,6 +21,8 @@ constexpr std::int64_t kCountPeriod = 1'000'000;
 constexpr std::int64_t kStreamSilence = 3'000'000;
 /// A bus never forgets a timer; so their number is bounded, also for ids that never send anything good.
 constexpr int kMaxReceiversMade = 2000;
+/// Of these, for ids that are known: strangers must not shut them out.
+constexpr int kReceiversForKnown = 1000;
 constexpr std::int64_t kMostLostCounted = 1'000'000;  // a hostile number must not overflow a sum
 
 /// AGENT of `in/AGENT/...`.
@@ -128,7 +130,8 @@ BrickReceiver* IngestNode::receiver_of(const std::string& channel, const std::st
   const std::string id = agent_of(channel);
   auto it = inputs_.find(id);
   if (it == inputs_.end()) {
-    if (receivers_made_ >= kMaxReceiversMade) {
+    const bool is_known = ingest_.find(id) != nullptr || site_.agents.contains(id);
+    if (receivers_made_ >= kMaxReceiversMade - (is_known ? 0 : kReceiversForKnown)) {
       counters_.refused(channel, {Code::kTooLarge, "too many streams have come and gone; restart ingest"});
       return nullptr;
     }

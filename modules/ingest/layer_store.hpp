@@ -28,7 +28,7 @@ class LayerStore {
   /// How many removed agents are remembered, so that who was not listening can still be told.
   static constexpr int kMaxRemoved = 64;
   /// Bricks of one agent in one transaction: some 20 ms.
-  static constexpr std::size_t kSlice = 1000;
+  static constexpr std::size_t kSlice = 2000;
 
   /// @throws std::runtime_error if the file cannot be used, or holds layers of another resolution (metres).
   LayerStore(const std::filesystem::path& file, double resolution);

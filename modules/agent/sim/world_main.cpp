@@ -1,6 +1,4 @@
-#include <fstream>
 #include <iostream>
-#include <iterator>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -8,6 +6,7 @@
 #include "agent/sim/score.hpp"
 #include "agent/sim/trajectory.hpp"
 #include "core/octomap_reader.hpp"
+#include "store/whole_file.hpp"
 
 namespace {
 
@@ -46,10 +45,10 @@ ordered_json to_json(const concord::MapScore& score) {
 }
 
 concord::Result<concord::OctomapImport> load(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  const concord::Bytes bytes{std::istreambuf_iterator<char>(file), {}};
-  if (!file) return concord::refuse(concord::Code::kIo, "cannot read " + path);
-  return concord::read_octomap_file(bytes, std::nullopt);
+  const concord::OctomapLimits limits;
+  return concord::read_whole_file(path, limits.bytes).and_then([&](const concord::Bytes& bytes) {
+    return concord::read_octomap_file(bytes, std::nullopt, limits);
+  });
 }
 
 }  // namespace

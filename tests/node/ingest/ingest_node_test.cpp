@@ -167,6 +167,21 @@ TEST_F(IngestNodeTest, agents_beyond_the_limit_are_refused_by_name) {
   EXPECT_GT(start_->counters.get("refused.in/d/digest.TOO_LARGE"), 0);
 }
 
+TEST_F(IngestNodeTest, strangers_without_content_do_not_shut_out_a_robot_of_the_site) {
+  site_.agents["robot1"];
+  restart();
+  for (int i = 0; i < 2500; ++i) {
+    const std::string id = std::to_string(i);
+    start_->bus.publish("in/" + id + "/digest",
+                        encode(BrickDigest{start_->bus.now(), 7, "f", 2 * site_.resolution, 0, 0, 0}));
+  }
+  const Robot stranger(*start_, "stranger", "f", some_map(3), site_.resolution);
+  const Robot robot(*start_, "robot1", "f", some_map(3), site_.resolution);
+  start_->run(2);
+  EXPECT_EQ(start_->follower["robot1"].map, some_map(3));
+  EXPECT_TRUE(start_->follower["stranger"].map.empty());
+}
+
 TEST_F(IngestNodeTest, no_bytes_harm_it) {
   say_octomap("robot1", "f", some_map(20));
   std::mt19937 random(7);
