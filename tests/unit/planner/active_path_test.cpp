@@ -242,7 +242,7 @@ TEST_F(ActivePath, ASearchThatFailedIsNotRepeatedWithinASecond) {
 /// What becomes free elsewhere is no reason to search again: the answer is as old as it was.
 TEST_F(ActivePath, ASearchThatFailedWaitsForAChangeWhereItCame) {
   Rows rows(64, std::string(200, '#'));
-  for (int y = 2; y < 12; ++y) rows[y].replace(2, 10, "..........");
+  for (int y = 2; y < 12; ++y) rows[y].replace(2, 14, "..............");
   for (int y = 2; y < 12; ++y) rows[y].replace(152, 10, "..........");
   show(rows);
   EXPECT_EQ(ask(from_to("p1", "robot1", Eigen::Vector2d(4.5, 4.5), {155.5, 8.5})).status, "NO_VALID_PATH");
@@ -253,7 +253,7 @@ TEST_F(ActivePath, ASearchThatFailedWaitsForAChangeWhereItCame) {
   rows[60][100] = '.';
   show(rows);
   EXPECT_FALSE(searched());
-  rows[9][12] = '.';  // in the wall of the room
+  rows[9][16] = '.';  // in the wall of the room, which is in another brick
   show(rows);
   EXPECT_TRUE(searched());
   rows[6][80] = '.';  // on the straight line to the goal
