@@ -3,11 +3,16 @@
 #include <string>
 #include <vector>
 
+#include <CLI/CLI.hpp>
+
 #include "core/error.hpp"
 #include "core/transform.hpp"
 #include "core/voxel_boxes.hpp"
 
 namespace concord {
+
+/// Of a robot, metres. 0 would mean "the site file's" on the wire: who wants that gives none.
+inline const CLI::Range kRobotRadius(0.001, 10.0);
 
 /// Quoted arguments: numbers with spaces or commas between them, metres, map frame unless said otherwise.
 /// Refused: another count of numbers than expected (kMalformed), NaN or infinity (kNotFinite).

@@ -1,10 +1,10 @@
 #include "cli/command.hpp"
 
+#include <algorithm>
 #include <cstdio>
+#include <string_view>
 
 #include <nlohmann/json.hpp>
-
-#include "bus/site.hpp"
 
 namespace concord {
 namespace {
@@ -48,9 +48,14 @@ int Program::run(int argc, const char* const* argv) {
     const Outcome outcome = chosen_(common_);
     return outcome ? static_cast<int>(*outcome) : report(outcome.error(), common_);
   } catch (const CLI::ParseError& e) {
+    // What was parsed before the mistake is not in common_ yet.
+    common_.json = std::find(argv, argv + argc, std::string_view("--json")) != argv + argc;
+    if (common_.json && e.get_exit_code() != 0) return report({Exit::kUnusable, "USAGE", e.what()}, common_);
     return app_.exit(e) == 0 ? 0 : static_cast<int>(Exit::kUnusable);
   } catch (const ConfigError& e) {
     return report({Exit::kUnusable, "CONFIGURATION", e.what()}, common_);
+  } catch (const std::exception& e) {  // what the system refuses: a temporary folder, memory
+    return report({Exit::kUnusable, "FAILED", e.what()}, common_);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json_fwd.hpp>
 
+#include "bus/site.hpp"
 #include "core/error.hpp"
 
 namespace concord {
@@ -43,6 +44,9 @@ struct Common {
   std::string site_file;  ///< empty: defaults
   double timeout = 10.0;  ///< seconds to wait for an answer
 
+  /// The site file's values, or the defaults. @throws ConfigError
+  [[nodiscard]] Site site() const { return site_file.empty() ? Site{} : load_site(site_file); }
+
   /// Prints a result, in the form that was asked for.
   void print(const nlohmann::json& object, const std::string& words) const;
 };
@@ -72,8 +76,11 @@ void add_project(Program& program);
 void add_plan(Program& program);
 void add_status(Program& program);
 void add_agents(Program& program);
-/// set-transform, edit, goal, save, load, maps, reset, remove.
+void add_edit(Program& program);
+/// set-transform, goal, reset, remove.
 void add_requests(Program& program);
+/// save, load, maps.
+void add_saved_maps(Program& program);
 void add_downsample(Program& program);
 void add_publish(Program& program);
 /// map, digest.

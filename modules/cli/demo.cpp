@@ -12,7 +12,7 @@ void add_demo(Program& program) {
                   [options](const Common& common) { return DemoRun(*options, common).run(); });
   command.add_option("--out", options->out, "folder for report.json, overview.png, map.bt, index.html, demo.lcm")
       ->capture_default_str();
-  command.add_flag("--headless", options->headless, "ends with the report, opens no page");
+  command.add_flag("--headless", options->headless, "ends with the report");
   auto* maps = command.add_option("--maps", options->maps, "two .bt or .ot files, sent as agents a and b")->expected(2);
   command.add_option("--transform", options->transform, "T_a_b as \"x y z qx qy qz qw\": b's points into a's frame")
       ->needs(maps);

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/map_file.hpp"
-#include "cli/page.hpp"
+#include "cli/numbers.hpp"
 #include "cli/report.hpp"
 
 namespace concord {
@@ -49,15 +49,11 @@ const MapScore* last_score(const DemoReport& report) {
   return report.merged ? &*report.merged : nullptr;
 }
 
-std::optional<Overview::Route> route_of(const std::optional<Path>& path) {
-  if (!path) return std::nullopt;
-  Overview::Route route{path->status, {}, path->length};
-  for (const Eigen::Vector3d& p : path->points) route.points.emplace_back(p.head<2>());
-  return route;
-}
-
 std::string percent(double share) { return format_number(100 * share, 1) + " %"; }
-std::string kilobytes(std::int64_t bytes) { return format_count((bytes + 999) / 1000) + " kB"; }
+
+std::string seconds_or_never(const std::optional<double>& seconds) {
+  return seconds ? format_number(*seconds, 0) + " s" : "never";
+}
 
 std::vector<std::pair<std::string, std::string>> numbers_of(const DemoReport& report) {
   std::vector<std::pair<std::string, std::string>> numbers;
@@ -66,11 +62,11 @@ std::vector<std::pair<std::string, std::string>> numbers_of(const DemoReport& re
     numbers.emplace_back("precision (within one voxel)", percent(score->precision));
     numbers.emplace_back("recall (within one voxel)", percent(score->recall));
   }
-  if (report.mapping_alone()) {
-    numbers.emplace_back("mapping, one agent after the other", format_number(*report.mapping_alone(), 0) + " s");
-    numbers.emplace_back("mapping, all at once", format_number(*report.mapping_together(), 0) + " s");
+  if (report.merged) {
+    numbers.emplace_back("90 % of this surface, first robot alone", seconds_or_never(report.one_agent_seconds));
+    numbers.emplace_back("90 % of this surface, all agents", seconds_or_never(report.all_agents_seconds));
   }
-  numbers.emplace_back("sent by agents", kilobytes(report.bytes_sent()));
+  numbers.emplace_back("sent by agents", format_kilobytes(report.bytes_sent()));
   return numbers;
 }
 
@@ -105,7 +101,7 @@ std::string agents_table(const DemoReport& report) {
   std::string out = "<table>\n" + row({"agent", "kind", "known voxels", "occupied", "sent"}, "th");
   for (const auto& agent : report.agents) {
     out += row({agent.state.id, agent.state.kind, format_count(agent.state.known), format_count(agent.state.occupied),
-                kilobytes(agent.bytes_sent)},
+                format_kilobytes(agent.bytes_sent)},
                "td");
   }
   return out + "</table>\n";
@@ -139,31 +135,12 @@ std::int64_t DemoReport::bytes_sent() const {
                          [](std::int64_t sum, const Agent& agent) { return sum + agent.bytes_sent; });
 }
 
-std::optional<double> DemoReport::mapping_alone() const {
-  double sum = 0;
-  for (const Agent& agent : agents) {
-    if (!agent.mapping_seconds) return std::nullopt;
-    sum += *agent.mapping_seconds;
-  }
-  return sum;
-}
-
-std::optional<double> DemoReport::mapping_together() const {
-  double longest = 0;
-  for (const Agent& agent : agents) {
-    if (!agent.mapping_seconds) return std::nullopt;
-    longest = std::max(longest, *agent.mapping_seconds);
-  }
-  return longest;
-}
-
 nlohmann::json to_json(const DemoReport& report) {
   nlohmann::json agents = nlohmann::json::array();
   for (const auto& agent : report.agents) {
     nlohmann::json object = to_json(agent.state);
     object["voxels"] = agent.state.known;
     object["bytes_sent"] = agent.bytes_sent;
-    object["mapping_seconds"] = or_null(agent.mapping_seconds);
     agents.push_back(std::move(object));
   }
   const MapScore* score = last_score(report);
@@ -187,7 +164,7 @@ nlohmann::json to_json(const DemoReport& report) {
           {"path_after", path_or_null(report.path_after)},
           {"replanned", or_null(report.replanned)},
           {"mapping_seconds",
-           {{"one_agent", or_null(report.mapping_alone())}, {"all_agents", or_null(report.mapping_together())}}},
+           {{"one_agent", or_null(report.one_agent_seconds)}, {"all_agents", or_null(report.all_agents_seconds)}}},
           {"bytes_sent", report.bytes_sent()},
           {"seconds", report.seconds}};
 }
@@ -204,8 +181,8 @@ Overview to_overview(const DemoReport& report) {
     overview.agents.push_back({agent.state.id, agent.map, agent.state.T_map_agent, agent.state.known});
   }
   overview.edit = report.edit;
-  overview.before = route_of(report.path_before);
-  overview.after = route_of(report.path_after);
+  if (report.path_before) overview.before = to_route(*report.path_before);
+  if (report.path_after) overview.after = to_route(*report.path_after);
   overview.start = report.start;
   overview.goal = report.goal;
   overview.features = features_of(report);
@@ -235,18 +212,12 @@ td + td { font-variant-numeric: tabular-nums; }
 }
 
 Result<void> write_report(const DemoReport& report, const std::filesystem::path& folder) {
-  const auto write = [&](const char* name, const std::string& text) {
-    return write_file(folder / name, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-  };
-  const nlohmann::json object = to_json(report);
-  if (auto written = write("report.json", object.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
-      !written) {
-    return written;
-  }
+  const std::string json = to_json(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  if (auto written = write_file(folder / "report.json", json); !written) return written;
   if (auto drawn = write_overview(to_overview(report), folder / "overview.png"); !drawn) {
     return tl::unexpected(drawn.error());
   }
-  return write("index.html", to_html(report));
+  return write_file(folder / "index.html", to_html(report));
 }
 
 }  // namespace concord

@@ -20,7 +20,6 @@ struct DemoReport {
     AgentState state;
     const BrickMap* map = nullptr;  ///< its submap, agent's frame
     std::int64_t bytes_sent = 0;
-    std::optional<double> mapping_seconds;  ///< from its first moment to the end of its way
   };
 
   double resolution = 0.05;
@@ -34,14 +33,14 @@ struct DemoReport {
   std::optional<MapScore> robot, merged, edited;  ///< one robot alone, all merged, and after the edit
   std::optional<Path> path_before, path_after;
   std::optional<bool> replanned;  ///< whether the active path was, by itself, when the edit crossed it
+  /// Simulated seconds until nine tenths of the surface in the merged map (its recall before the edit) were shown by
+  /// the first robot's own submap, and by the merged map; absent where they never were.
+  std::optional<double> one_agent_seconds, all_agents_seconds;
   std::optional<Eigen::Vector2d> start, goal;
   std::map<std::string, double> seconds;  ///< how long each part took
   bool complete = true;                   ///< everything arrived
 
   [[nodiscard]] std::int64_t bytes_sent() const;
-  /// One agent driving all ways, one after the other, against all at the same time. Absent without simulated agents.
-  [[nodiscard]] std::optional<double> mapping_alone() const;
-  [[nodiscard]] std::optional<double> mapping_together() const;
 };
 
 [[nodiscard]] nlohmann::json to_json(const DemoReport& report);

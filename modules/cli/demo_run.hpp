@@ -2,8 +2,10 @@
 
 #include <memory>
 
+#include "cli/demo_folder.hpp"
 #include "cli/demo_report.hpp"
 #include "cli/demo_scene.hpp"
+#include "cli/demo_score.hpp"
 #include "cli/demo_watch.hpp"
 #include "cli/live.hpp"
 #include "cli/stack.hpp"
@@ -44,13 +46,16 @@ class DemoRun {
   [[nodiscard]] Step align(const AgentState& state);
   [[nodiscard]] Step settle();
   [[nodiscard]] tl::expected<Path, Failure> plan(bool keep_active);
-  void score_map(const BrickMap& before_edit);
+  void note_moment();
+  void say_progress() const;
+  void score();
   void show();
   void say(const std::string& line) const;
   [[nodiscard]] double now() const;
   void took(const std::string& part, double since) { report_.seconds[part] = now() - since; }
 
   DemoOptions options_;
+  DemoFolder folder_;
   Common common_;
   Supervisor::Clock::time_point began_ = Supervisor::Clock::now();
   DemoScene scene_;
@@ -59,6 +64,7 @@ class DemoRun {
   std::unique_ptr<Copies> copies_;
   std::unique_ptr<DemoWatch> watch_;
   std::string active_path_;  ///< the request that is kept up to date
+  std::vector<MappingMoment> moments_;
   BrickMap before_edit_;
   DemoReport report_;
 };

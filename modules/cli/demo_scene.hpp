@@ -31,7 +31,7 @@ struct DemoAgent {
   int weight = 1;
   Transform T_map_agent = Transform::Identity();  ///< where it is known to be, roughly
   std::optional<BrickMap> file;                   ///< what it sends; absent: it is simulated
-  double mapping_seconds = 0.0;                   ///< of its whole way, when it is simulated
+  double way_seconds = 0.0;                       ///< simulated, of its whole way
 };
 
 /// All that happens in a demo, as values.

@@ -1,15 +1,20 @@
+#include "cli/downsample.hpp"
+
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <sstream>
 
 #include <nlohmann/json.hpp>
 
-#include "cli/live.hpp"
 #include "cli/map_file.hpp"
-#include "cli/page.hpp"
+#include "cli/numbers.hpp"
+#include "cli/report.hpp"
 
 namespace concord {
 namespace {
+
+constexpr std::int64_t kSilence = 1'000'000;  // microseconds
 
 struct Options {
   std::string agent, out;
@@ -19,6 +24,14 @@ struct Options {
 /// The parts of one answer; they may come in any order and more than once.
 struct Parts {
   std::map<std::int32_t, Downsampled> heard;
+  std::int64_t last_heard = 0;
+
+  void take(Downsampled part, std::int64_t now) {
+    // Asked again, the submap may have changed: what was heard before belongs to another cloud.
+    if (!heard.empty() && heard.begin()->second.parts != part.parts) heard.clear();
+    heard[part.part] = std::move(part);
+    last_heard = now;
+  }
 
   [[nodiscard]] bool complete() const {
     return !heard.empty() && static_cast<std::int32_t>(heard.size()) == heard.begin()->second.parts;
@@ -50,36 +63,46 @@ Outcome downsample(const Options& options, const Common& common) {
   if (extension != ".pcd" && extension != ".csv") {
     return fail(Exit::kUnusable, "BAD_NAME", options.out + " must end in .pcd or .csv");
   }
-  if (!is_name(options.agent)) return fail(Exit::kUnusable, "BAD_NAME", options.agent + " is no agent's id");
+  if (!is_name(options.agent)) return bad_name(options.agent);
   Live live(common);
-  const DownsampleRequest request{live.new_id(), options.agent, options.resolution};
-  Parts parts;
-  live.hear<Downsampled>("out/downsampled", [&](const std::string&, Downsampled part) {
-    if (part.id == request.id) parts.heard[part.part] = std::move(part);
+  const auto points = request_cloud(live, {live.new_id(), options.agent, options.resolution});
+  if (!points) return tl::unexpected(points.error());
+  const auto written = write_file(options.out, extension == ".csv" ? as_csv(*points) : as_pcd(*points));
+  if (!written) return fail(written.error());
+  common.print({{"agent", options.agent}, {"resolution", options.resolution}, {"points", points->size()}},
+               format_count(static_cast<std::int64_t>(points->size())) + " points written to " + options.out);
+  return Exit::kDone;
+}
+
+}  // namespace
+
+tl::expected<std::vector<Eigen::Vector3f>, Failure> request_cloud(Live& live, const DownsampleRequest& request) {
+  const auto parts = std::make_shared<Parts>();  // the subscription outlives this call
+  live.hear<Downsampled>("out/downsampled", [parts, id = request.id, &live](const std::string&, Downsampled part) {
+    if (part.id == id) parts->take(std::move(part), live.bus().now());
   });
   const auto refused = [&] {
     const Answer* answer = live.answer_to(request.id);
     return answer != nullptr && !answer->ok;
   };
-  const auto done = [&] { return parts.complete() || refused(); };
-  live.ask_until("in/downsample", encode(request, live.bus().now()), live.timeout(), done);
+  std::int64_t asked = 0;
+  live.wait(live.timeout(), [&] {
+    const std::int64_t now = live.bus().now();
+    if (parts->complete() || refused()) return true;
+    if (now - std::max(asked, parts->last_heard) > kSilence) {
+      live.bus().publish("in/downsample", encode(request, now));
+      asked = now;
+    }
+    return false;
+  });
   if (refused()) {
     const Answer& answer = *live.answer_to(request.id);
     return fail(Exit::kRefused, answer.code, answer.process + ": " + answer.message);
   }
-  if (parts.heard.empty()) return live.no_answer("ingest");
-  if (!parts.complete()) return fail(Exit::kIncomplete, "INCOMPLETE", "parts of the cloud did not arrive; try again");
-
-  const std::vector<Eigen::Vector3f> points = parts.points();
-  const std::string text = extension == ".csv" ? as_csv(points) : as_pcd(points);
-  const auto written = write_file(options.out, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-  if (!written) return fail(written.error());
-  common.print({{"agent", options.agent}, {"resolution", options.resolution}, {"points", points.size()}},
-               format_count(static_cast<std::int64_t>(points.size())) + " points written to " + options.out);
-  return Exit::kDone;
+  if (parts->heard.empty()) return live.no_answer("ingest");
+  if (!parts->complete()) return fail(Exit::kIncomplete, "INCOMPLETE", "parts of the cloud did not arrive; try again");
+  return parts->points();
 }
-
-}  // namespace
 
 void add_downsample(Program& program) {
   auto options = std::make_shared<Options>();

@@ -17,10 +17,6 @@ std::uint8_t grey_of(LogOdds cell) {
   return is_occupied(cell) ? kOccupiedGrey : kFreeGrey;
 }
 
-Result<void> write_text(const std::filesystem::path& file, const std::string& text) {
-  return write_file(file, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-}
-
 }  // namespace
 
 Result<GridExtent> extent_of(const Grid& grid) {
@@ -51,14 +47,14 @@ Result<void> save_grid(const std::filesystem::path& pgm, const Grid& grid, const
     for (std::int32_t x = extent.min.x; x <= extent.max.x; ++x)
       picture.put(static_cast<char>(grey_of(grid.at({x, y}))));
   }
-  if (auto written = write_text(pgm, picture.str()); !written) return written;
+  if (auto written = write_file(pgm, picture.str()); !written) return written;
 
   std::ostringstream yaml;
   yaml.precision(12);
   yaml << "image: " << pgm.filename().string() << "\nmode: trinary\nresolution: " << grid.resolution() << "\norigin: ["
        << extent.min.x * grid.resolution() << ", " << extent.min.y * grid.resolution()
        << ", 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
-  return write_text(std::filesystem::path(pgm).replace_extension(".yaml"), yaml.str());
+  return write_file(std::filesystem::path(pgm).replace_extension(".yaml"), yaml.str());
 }
 
 Result<Grid> project_map(const BrickMap& map, double resolution, double zmin, double zmax, double free_share) {

@@ -4,7 +4,7 @@
 
 #include "cli/command.hpp"
 #include "cli/map_file.hpp"
-#include "cli/page.hpp"
+#include "cli/numbers.hpp"
 
 namespace concord {
 namespace {

@@ -2,18 +2,14 @@
 
 #include <unistd.h>
 
-#include <cinttypes>
 #include <cmath>
 
+#include "cli/end_request.hpp"
+
 namespace concord {
-namespace {
-
-Site site_of(const Common& common) { return common.site_file.empty() ? Site{} : load_site(common.site_file); }
-
-}  // namespace
 
 Live::Live(const Common& common)
-    : site_(site_of(common)),
+    : site_(common.site()),
       timeout_(common.timeout),
       bus_(site_.lcm_url, counters_),
       id_prefix_("cli-" + std::to_string(getpid()) + "-" + std::to_string(bus_.now()) + "-") {
@@ -30,7 +26,19 @@ std::string Live::new_id() { return id_prefix_ + std::to_string(++next_id_); }
 
 bool Live::wait(double seconds, const std::function<bool()>& done) {
   const std::int64_t end = bus_.now() + std::llround(seconds * 1e6);
-  while (!done() && bus_.now() < end) bus_.spin_once(10);
+  while (!done() && bus_.now() < end && !end_requested()) bus_.spin_once(10);
+  return done();
+}
+
+bool Live::wait_while_moving(double seconds, const std::function<std::int64_t()>& moves,
+                             const std::function<bool()>& done) {
+  std::int64_t seen = moves(), since = bus_.now();
+  while (!done() && bus_.now() - since < std::llround(seconds * 1e6) && !end_requested()) {
+    bus_.spin_once(10);
+    if (moves() == seen) continue;
+    seen = moves();
+    since = bus_.now();
+  }
   return done();
 }
 
@@ -96,12 +104,6 @@ tl::expected<Path, Failure> request_path(Live& live, const PathRequest& request)
   if (const Path* path = live.path_for(request.id)) return *path;
   const Answer& answer = *live.answer_to(request.id);
   return fail(Exit::kRefused, answer.code, answer.process + ": " + answer.message);
-}
-
-std::string hex(std::uint64_t digest) {
-  char text[17];
-  std::snprintf(text, sizeof(text), "%016" PRIx64, digest);
-  return text;
 }
 
 }  // namespace concord

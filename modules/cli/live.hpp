@@ -41,8 +41,10 @@ class Live {
     });
   }
 
-  /// Handles messages until `done()`, at most `seconds`. @return done().
+  /// Handles messages until `done()`, at most `seconds` or until the program is to end. @return done().
   bool wait(double seconds, const std::function<bool()>& done);
+  /// The same, as long as `moves()` has not stayed what it is for `seconds`.
+  bool wait_while_moving(double seconds, const std::function<std::int64_t()>& moves, const std::function<bool()>& done);
   /// The same, publishing `request` on `channel` at once and until then every kAskAgain.
   bool ask_until(const std::string& channel, const Bytes& request, double seconds, const std::function<bool()>& done);
 
@@ -91,8 +93,5 @@ class StreamCopy {
 [[nodiscard]] Outcome ask_path(PathRequest request, const Common& common);
 /// The planner's word on `request`, or the stack's refusal.
 [[nodiscard]] tl::expected<Path, Failure> request_path(Live& live, const PathRequest& request);
-
-/// As people and scripts write it.
-[[nodiscard]] std::string hex(std::uint64_t digest);
 
 }  // namespace concord

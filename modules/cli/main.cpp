@@ -15,7 +15,9 @@ int main(int argc, char** argv) {
   concord::add_plan(program);
   concord::add_status(program);
   concord::add_agents(program);
+  concord::add_edit(program);
   concord::add_requests(program);
+  concord::add_saved_maps(program);
   concord::add_downsample(program);
   concord::add_publish(program);
   concord::add_map(program);

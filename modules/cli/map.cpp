@@ -4,7 +4,8 @@
 
 #include "cli/live.hpp"
 #include "cli/map_file.hpp"
-#include "cli/page.hpp"
+#include "cli/numbers.hpp"
+#include "cli/report.hpp"
 
 namespace concord {
 namespace {
@@ -20,7 +21,7 @@ std::string stream_of(const Options& options) {
 /// Takes a stream whole, and a file if one is asked for.
 Outcome take(const Options& options, const Common& common, bool only_digest) {
   if (!options.agent.empty() && !is_name(options.agent)) {
-    return fail(Exit::kUnusable, "BAD_NAME", options.agent + " is no agent's id");
+    return bad_name(options.agent);
   }
   Live live(common);
   StreamCopy copy(live, stream_of(options));

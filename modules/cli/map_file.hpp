@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string_view>
 
 #include "core/brick_map.hpp"
 #include "core/error.hpp"
@@ -17,7 +18,7 @@ namespace concord {
 /// stood there as it was.
 [[nodiscard]] Result<void> save_map(const std::filesystem::path& file, const BrickMap& map, double resolution);
 
-/// Writes bytes to a file of its own beside `file`, then renames it. Refused: kIo.
-[[nodiscard]] Result<void> write_file(const std::filesystem::path& file, std::span<const std::uint8_t> bytes);
+/// Writes a file that is there whole or not at all. Refused: see write_whole_file.
+[[nodiscard]] Result<void> write_file(const std::filesystem::path& file, std::string_view text);
 
 }  // namespace concord

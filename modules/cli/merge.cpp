@@ -1,4 +1,3 @@
-#include <cinttypes>
 #include <memory>
 #include <thread>
 
@@ -7,7 +6,7 @@
 #include "cli/arguments.hpp"
 #include "cli/command.hpp"
 #include "cli/map_file.hpp"
-#include "cli/page.hpp"
+#include "cli/numbers.hpp"
 #include "core/compose.hpp"
 
 namespace concord {
@@ -40,8 +39,7 @@ Outcome merge(const Options& options, const Common& common) {
   const auto known = static_cast<std::int64_t>(merged.values.known_count());
   const auto occupied = static_cast<std::int64_t>(merged.values.occupied_count());
   const auto conflicting = static_cast<std::int64_t>(merged.conflicts.known_count());
-  char hash[17];
-  std::snprintf(hash, sizeof(hash), "%016" PRIx64, digest(merged.values));
+  const std::string hash = hex(digest(merged.values));
   common.print({{"resolution", a->resolution},
                 {"occupied", occupied},
                 {"free", known - occupied},

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <set>
 
+#include "cli/numbers.hpp"
 #include "cli/page.hpp"
 #include "cli/relief.hpp"
 

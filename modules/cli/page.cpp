@@ -93,21 +93,4 @@ Result<void> Page::write(const std::filesystem::path& png) {
                                "; check that the folder exists and may be written");
 }
 
-std::string format_count(std::int64_t count) {
-  const std::string digits = std::to_string(count);
-  const std::size_t sign = count < 0 ? 1 : 0;
-  std::string grouped;
-  for (std::size_t i = 0; i < digits.size(); ++i) {
-    if (i > sign && (digits.size() - i) % 3 == 0) grouped += ',';
-    grouped += digits[i];
-  }
-  return grouped;
-}
-
-std::string format_number(double value, int decimals) {
-  char text[64];
-  std::snprintf(text, sizeof(text), "%.*f", decimals, value);
-  return text;
-}
-
 }  // namespace concord

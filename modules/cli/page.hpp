@@ -65,8 +65,4 @@ class Page {
   std::unique_ptr<cairo_t, CairoEnd> cairo_;
 };
 
-/// 1234567 as "1,234,567".
-[[nodiscard]] std::string format_count(std::int64_t count);
-[[nodiscard]] std::string format_number(double value, int decimals);
-
 }  // namespace concord

@@ -1,16 +1,14 @@
 #include <memory>
 #include <optional>
 
-#include <nlohmann/json.hpp>
-
-#include "bus/site.hpp"
 #include "cli/arguments.hpp"
 #include "cli/command.hpp"
 #include "cli/grid_file.hpp"
 #include "cli/live.hpp"
 #include "cli/map_file.hpp"
+#include "cli/numbers.hpp"
 #include "cli/overview.hpp"
-#include "cli/page.hpp"
+#include "cli/report.hpp"
 #include "planner/plan.hpp"
 
 namespace concord {
@@ -34,48 +32,56 @@ Result<Ends> parse_ends(const Options& options) {
   return parse_point(options.from).map([&](const Eigen::Vector2d& from) { return Ends{from, *to}; });
 }
 
-Result<void> draw(const Options& options, double radius, const OctomapImport& loaded, const Ends& ends,
-                  const PlanResult& result) {
+/// What a plan on a file is held against: the site's where the command line is silent.
+struct Terms {
+  double zmin, zmax, radius, free_share;
+};
+
+Terms terms_of(const Options& options, const Site& site) {
+  const bool own_band = !options.band.empty();
+  return {own_band ? options.band[0] : site.planner.zmin, own_band ? options.band[1] : site.planner.zmax,
+          options.radius.value_or(site.unlisted.radius), site.planner.free_share};
+}
+
+Result<void> draw(const Options& options, const Terms& terms, const OctomapImport& loaded, const Ends& ends,
+                  const Path& path) {
   Overview overview;
   overview.title = "Path";
-  overview.subtitle = options.map + ", robot radius " + format_number(radius, 2) + " m. " + result.message;
+  overview.subtitle = options.map + ", robot radius " + format_number(terms.radius, 2) + " m: " + path.message;
   overview.resolution = loaded.resolution;
-  overview.cut = options.band[1];
+  overview.cut = terms.zmax;
   overview.map = &loaded.map;
-  overview.after = Overview::Route{name(result.reason), result.points, result.length};
+  overview.after = to_route(path);
   overview.start = ends.from;
   overview.goal = ends.to;
   const auto written = write_overview(overview, options.out);
   return written ? Result<void>{} : tl::unexpected(written.error());
 }
 
+/// As the planner would say it.
+Path to_path(PlanResult result, double floor) {
+  Path path;
+  path.status = name(result.reason);
+  path.message = std::move(result.message);
+  for (const Eigen::Vector2d& p : result.points) path.points.emplace_back(p.x(), p.y(), floor);
+  path.length = result.length;
+  path.least_clearance = result.least_clearance;
+  return path;
+}
+
 Outcome plan_on_file(const Options& options, const Ends& ends, const Common& common) {
-  if (options.band.size() != 2 || !ends.from) {
-    return fail(Exit::kUnusable, "USAGE", "on a map file plan needs --band and --from");
-  }
-  const double radius = options.radius.value_or(Site{}.unlisted.radius);
+  if (!ends.from) return fail(Exit::kUnusable, "USAGE", "on a map file plan needs --from");
+  const Terms terms = terms_of(options, common.site());
   const auto loaded = load_map(options.map);
   if (!loaded) return fail(loaded.error());
-  const auto grid =
-      project_map(loaded->map, loaded->resolution, options.band[0], options.band[1], Site{}.planner.free_share);
+  const auto grid = project_map(loaded->map, loaded->resolution, terms.zmin, terms.zmax, terms.free_share);
   if (!grid) return fail(grid.error());
-  const PlanResult result = plan(*grid, *ends.from, ends.to, radius);
+  const Path path = to_path(plan(*grid, *ends.from, ends.to, terms.radius), terms.zmin);
   if (!options.out.empty()) {
-    const auto drawn = draw(options, radius, *loaded, ends, result);
+    const auto drawn = draw(options, terms, *loaded, ends, path);
     if (!drawn) return fail(drawn.error());
   }
-  nlohmann::json points = nlohmann::json::array();
-  for (const auto& p : result.points) points.push_back({p.x(), p.y()});
-  const bool found = result.reason == Reason::kOk;
-  common.print({{"status", name(result.reason)},
-                {"message", result.message},
-                {"length", found ? nlohmann::json(result.length) : nlohmann::json()},
-                {"least_clearance", found ? nlohmann::json(result.least_clearance) : nlohmann::json()},
-                {"points", points}},
-               found ? "path of " + format_number(result.length, 2) + " m, " + std::to_string(result.points.size()) +
-                           " points, least clearance " + format_number(result.least_clearance, 2) + " m"
-                     : std::string(name(result.reason)) + ": " + result.message);
-  return found ? Exit::kDone : Exit::kNegative;
+  return print_path(path, common);
 }
 
 Outcome plan_command(const Options& options, const Common& common) {
@@ -99,11 +105,13 @@ void add_plan(Program& program) {
                                   [options](const Common& common) { return plan_command(*options, common); });
   auto* map = command.add_option("--map", options->map, ".bt or .ot; without it the running planner is asked");
   command.add_option("--robot", options->robot, "the robot whose pose and radius the planner uses")->excludes(map);
-  command.add_option("--band", options->band, "zmin zmax, metres; with --map")->expected(2)->needs(map);
+  command.add_option("--band", options->band, "zmin zmax, metres; with --map; without it the site file's")
+      ->expected(2)
+      ->needs(map);
   command.add_option("--from", options->from, "\"x y\"; without it the robot's last pose");
   command.add_option("--to", options->to, "\"x y\", map frame, metres")->required();
   command.add_option("--radius", options->radius, "of the robot, metres; without it the site file's")
-      ->check(CLI::Range(0.0, 10.0));
+      ->check(kRobotRadius);
   command.add_option("--out", options->out, "writes a picture (.png); with --map")->needs(map);
 }
 

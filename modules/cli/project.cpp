@@ -1,12 +1,12 @@
 #include <memory>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 
-#include "bus/site.hpp"
 #include "cli/command.hpp"
 #include "cli/grid_file.hpp"
 #include "cli/map_file.hpp"
-#include "cli/page.hpp"
+#include "cli/numbers.hpp"
 
 namespace concord {
 namespace {
@@ -14,13 +14,14 @@ namespace {
 struct Options {
   std::string file, out;
   std::vector<double> band;
-  double free_share = Site{}.planner.free_share;
+  std::optional<double> free_share;  ///< absent: the site's
 };
 
 Outcome project(const Options& options, const Common& common) {
   const auto loaded = load_map(options.file);
   if (!loaded) return fail(loaded.error());
-  const auto grid = project_map(loaded->map, loaded->resolution, options.band[0], options.band[1], options.free_share);
+  const auto grid = project_map(loaded->map, loaded->resolution, options.band[0], options.band[1],
+                                options.free_share.value_or(common.site().planner.free_share));
   if (!grid) return fail(grid.error());
   const auto extent = extent_of(*grid);
   if (!extent) return fail(extent.error());
@@ -52,9 +53,10 @@ void add_project(Program& program) {
                                   [options](const Common& common) { return project(*options, common); });
   command.add_option("file", options->file, ".bt or .ot")->required();
   command.add_option("--band", options->band, "zmin zmax, metres")->expected(2)->required();
-  command.add_option("--free-share", options->free_share, "of the band that must be observed free, above 0 to 1")
-      ->check(CLI::Range(1e-6, 1.0))
-      ->capture_default_str();
+  command
+      .add_option("--free-share", options->free_share,
+                  "of the band that must be observed free, above 0 to 1; without it the site's")
+      ->check(CLI::Range(1e-6, 1.0));
   command.add_option("--out", options->out, "writes a .pgm, and the .yaml that map_server reads");
 }
 

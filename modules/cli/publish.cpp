@@ -1,89 +1,154 @@
 #include "cli/publish.hpp"
 
+#include <algorithm>
+#include <memory>
+#include <utility>
+
 #include <nlohmann/json.hpp>
 
 #include "cli/map_file.hpp"
-#include "cli/page.hpp"
+#include "cli/numbers.hpp"
+#include "cli/report.hpp"
 #include "core/octomap_writer.hpp"
 
 namespace concord {
 namespace {
+
+/// A refusal may be of what another sender of this id says; one that goes on while nothing comes in is of ours.
+constexpr std::int64_t kRefusals = 2;
 
 struct Options {
   std::string file, agent, as = "bricks";
   std::string frame = "file";
 };
 
-bool has_all(const AgentList& list, const std::string& agent, const std::string& frame, std::int64_t known) {
-  return std::ranges::any_of(list.agents, [&](const AgentState& state) {
-    return state.id == agent && state.frame_id == frame && state.synced && state.known == known;
-  });
-}
-
 Outcome print_sent(const Common& common, const Options& options, std::int64_t known, std::int64_t bytes) {
-  common.print({{"agent", options.agent}, {"known", known}, {"bytes_sent", bytes}},
-               options.agent + ": " + format_count(known) + " voxels are with the stack, " +
-                   format_count((bytes + 999) / 1000) + " kB sent");
+  common.print(
+      {{"agent", options.agent}, {"known", known}, {"bytes_sent", bytes}},
+      options.agent + ": " + format_count(known) + " voxels are with the stack, " + format_kilobytes(bytes) + " sent");
   return Exit::kDone;
 }
 
-tl::unexpected<Failure> not_arrived(const Options& options) {
-  return fail(
-      Exit::kIncomplete, "INCOMPLETE",
-      "the stack does not report all of " + options.agent + "; see concord status and agents, give a longer --timeout");
+bool is_refused(const Delivery& delivery) { return delivery.refusals() >= kRefusals; }
+
+tl::unexpected<Failure> frame_is_over(const Options& options) {
+  return fail(Exit::kRefused, name(Code::kBadFrame),
+              "frame " + options.frame + " of " + options.agent +
+                  " was reset and is over; begin another with --frame NAME, and place it with concord set-transform");
+}
+
+tl::unexpected<Failure> not_arrived(const Options& options, const Delivery& delivery) {
+  if (delivery.refusal() == name(Code::kBadFrame)) return frame_is_over(options);
+  if (!delivery.refusal().empty()) {
+    return fail(Exit::kRefused, delivery.refusal(),
+                "ingest refuses what " + options.agent + " sends, and has printed why");
+  }
+  return fail(Exit::kIncomplete, "INCOMPLETE",
+              "nothing more of " + options.agent + " arrives at the stack; see concord status and concord agents");
 }
 
 Outcome publish_bricks(Live& live, const Options& options, const BrickMap& map, const Common& common) {
   PublishedMap published(live, options.agent, options.frame, map);
-  live.wait(live.timeout(), [&] { return published.arrived() || published.was_reset(); });
-  if (published.was_reset()) return fail(Exit::kRefused, "RESET", options.agent + " was reset meanwhile");
-  if (!published.arrived()) return not_arrived(options);
+  const auto over = [&] { return published.arrived() || published.was_reset() || is_refused(published.delivery()); };
+  live.wait_while_moving(
+      live.timeout(), [&] { return published.moves(); }, over);
+  if (published.was_reset()) return frame_is_over(options);
+  if (!published.arrived()) return not_arrived(options, published.delivery());
   return print_sent(common, options, published.known(), published.bytes_sent());
 }
 
 /// One message; sent again every few seconds, since a large one loses a fragment easily.
-Outcome publish_octomap(Live& live, const Options& options, const OctomapImport& loaded, std::int64_t known,
-                        const Common& common) {
-  constexpr std::int64_t kAgain = 5'000'000;
+Outcome publish_octomap(Live& live, const Options& options, const OctomapImport& loaded, const Common& common) {
+  constexpr std::int64_t kAgain = 3'000'000;
   auto data = write_octomap_data(loaded.map, OctomapFormat::kFull);
   if (!data) return fail(data.error());
+  // What ingest will make of it.
+  const auto made = read_octomap_data(*data, OctomapFormat::kFull, loaded.resolution, live.site().resolution);
+  if (!made) return fail(made.error());
   const Bytes message =
       encode(OctomapMessage{live.bus().now(), options.frame, loaded.resolution, false, std::move(*data)});
-  bool arrived = false;
-  live.hear<AgentList>("out/agents", [&](const std::string&, const AgentList& list) {
-    arrived = has_all(list, options.agent, options.frame, known);
-  });
+  const Delivery delivery(live, options.agent, options.frame, made->map);
   std::int64_t sent = 0, due = 0;
-  live.wait(live.timeout(), [&] {
-    if (!arrived && live.bus().now() >= due) {
+  const auto over = [&] {
+    if (sent > 0 && (delivery.arrived() || is_refused(delivery))) return true;
+    if (live.bus().now() >= due) {
       live.bus().publish("in/" + options.agent + "/octomap", message);
       sent += static_cast<std::int64_t>(message.size());
       due = live.bus().now() + kAgain;
     }
-    return arrived;
-  });
-  if (!arrived) return not_arrived(options);
-  return print_sent(common, options, known, sent);
+    return false;
+  };
+  live.wait_while_moving(
+      live.timeout(), [&] { return delivery.moves(); }, over);
+  if (!delivery.arrived()) return not_arrived(options, delivery);
+  return print_sent(common, options, static_cast<std::int64_t>(made->map.known_count()), sent);
 }
 
 Outcome publish(const Options& options, const Common& common) {
   for (const std::string& name : {options.agent, options.frame}) {
-    if (!is_name(name)) return fail(Exit::kUnusable, "BAD_NAME", name + " is no name: 1 to 40 of A-Z a-z 0-9 . _ -");
+    if (!is_name(name)) return bad_name(name);
   }
   Live live(common);
-  const auto as_stack = load_map(options.file, live.site().resolution);
-  if (!as_stack) return fail(as_stack.error());
-  if (as_stack->map.empty()) return fail(Exit::kUnusable, "EMPTY", options.file + " holds no voxel");
-  if (options.as == "bricks") return publish_bricks(live, options, as_stack->map, common);
-  const auto as_it_is = load_map(options.file);
-  if (!as_it_is) return fail(as_it_is.error());
-  return publish_octomap(live, options, *as_it_is, static_cast<std::int64_t>(as_stack->map.known_count()), common);
+  const bool as_bricks = options.as == "bricks";
+  const auto loaded = load_map(options.file, as_bricks ? std::optional(live.site().resolution) : std::nullopt);
+  if (!loaded) return fail(loaded.error());
+  if (loaded->map.empty()) return fail(Exit::kUnusable, "EMPTY", options.file + " holds no voxel");
+  return as_bricks ? publish_bricks(live, options, loaded->map, common)
+                   : publish_octomap(live, options, *loaded, common);
 }
 
 }  // namespace
 
+Delivery::Delivery(Live& live, const std::string& agent, const std::string& frame, const BrickMap& map)
+    : agent_(agent), frame_(frame), brick_count_(static_cast<std::int64_t>(map.brick_count())), content_(digest(map)) {
+  live.hear<BrickDigest>(StreamChannels("out/agent/" + agent).digest,
+                         [this](const std::string&, const BrickDigest& digest) { on_digest(digest); });
+  live.hear<AgentList>("out/agents", [this](const std::string&, const AgentList& list) { on_agents(list); });
+  live.hear<ProcessStatus>("out/status/ingest",
+                           [this](const std::string&, const ProcessStatus& status) { on_status(status); });
+}
+
+void Delivery::on_digest(const BrickDigest& digest) {
+  held_ = digest.frame_id == frame_ && digest.brick_count == brick_count_ && digest.content == content_;
+  if (digest.revision != revision_ || digest.content != last_content_) {
+    moved();
+    taken_ = false;  // until merge speaks of this revision
+  }
+  revision_ = digest.revision;
+  last_content_ = digest.content;
+}
+
+void Delivery::on_agents(const AgentList& list) {
+  const auto state = std::ranges::find(list.agents, agent_, &AgentState::id);
+  if (state == list.agents.end()) return;
+  if (state->known != known_) moved();
+  known_ = state->known;
+  taken_ = state->frame_id == frame_ && state->synced && state->revision == revision_;
+}
+
+void Delivery::on_status(const ProcessStatus& status) {
+  const std::string ours = "refused.in/" + agent_;
+  for (const auto& [counter, count] : status.counters) {
+    const std::size_t dot = counter.rfind('.');
+    const std::string where = counter.substr(0, dot);
+    if (where != ours && !where.starts_with(ours + "/")) continue;
+    const std::int64_t before = std::exchange(refused_[counter], count);
+    if (!status_heard_ || before == count) continue;
+    ++refusals_;
+    refusal_ = counter.substr(dot + 1);
+  }
+  status_heard_ = true;
+}
+
+void Delivery::moved() {
+  ++moves_;
+  refusals_ = 0;
+  refusal_.clear();
+}
+
 PublishedMap::PublishedMap(Live& live, const std::string& agent, const std::string& frame, const BrickMap& map)
     : known_(static_cast<std::int64_t>(map.known_count())),
+      delivery_(live, agent, frame, map),
       publisher_(live.bus(), live.counters(),
                  {.agent = agent,
                   .resolution = live.site().resolution,
@@ -92,9 +157,6 @@ PublishedMap::PublishedMap(Live& live, const std::string& agent, const std::stri
                  [this] { was_reset_ = true; }) {
   publisher_.begin_frame(frame);
   publisher_.publish(map);
-  live.hear<AgentList>("out/agents", [this, agent, frame](const std::string&, const AgentList& list) {
-    arrived_ = has_all(list, agent, frame, known_);
-  });
 }
 
 void add_publish(Program& program) {

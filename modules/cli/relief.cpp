@@ -55,13 +55,14 @@ void for_each_column(const Columns& columns, Visit&& visit) {
   }
 }
 
-/// What is left of the values when a five-hundredth is taken off each end.
+/// What is left of the values when a five-hundredth is taken off each end; a fiftieth where that makes the rest much
+/// larger on the page, as with the few returns from beyond a room's windows.
 std::pair<std::int32_t, std::int32_t> trimmed(std::vector<std::int32_t>& values) {
-  const std::size_t drop = values.size() / 500;
-  std::nth_element(values.begin(), values.begin() + drop, values.end());
-  const std::int32_t low = values[drop];
-  std::nth_element(values.begin(), values.end() - 1 - drop, values.end());
-  return {low, values[values.size() - 1 - drop]};
+  std::ranges::sort(values);
+  const std::size_t few = values.size() / 500, more = values.size() / 50, last = values.size() - 1;
+  const std::int32_t worth = (values[last - few] - values[few]) / 10;
+  return {values[values[more] - values[few] > worth ? more : few],
+          values[last - (values[last - few] - values[last - more] > worth ? more : few)]};
 }
 
 /// The part of the lattice that is drawn.

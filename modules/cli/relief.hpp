@@ -43,8 +43,8 @@ struct Relief {
   }
 };
 
-/// Looks down on the map. Far outliers (a five-hundredth of the columns on each side) are left off the picture, routes,
-/// edits, start and goal never are. @return a relief without cells where the map has nothing under the cut.
+/// Looks down on the map. Far outliers (at most a fiftieth of the columns on each side) are left off the picture,
+/// routes, edits, start and goal never are. @return a relief without cells where the map has nothing under the cut.
 [[nodiscard]] Relief look_down(const Overview& overview);
 
 /// Light from the upper left, soft shadows, darker corners: opaque 0xFFRRGGBB or 0 (nothing known), rows as in

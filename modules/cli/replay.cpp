@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/live.hpp"
+#include "cli/numbers.hpp"
 
 namespace concord {
 namespace {
@@ -75,7 +76,7 @@ std::string words(const nlohmann::json& result, const std::vector<std::string>& 
 }
 
 Outcome replay(const Options& options, const Common& common) {
-  const Site site = common.site_file.empty() ? Site{} : load_site(common.site_file);
+  const Site site = common.site();
   const auto replayed = options.live ? replay_live(options.log, site) : replay_lockstep(options.log, site);
   if (!replayed) return tl::unexpected(replayed.error());
   nlohmann::json result = to_json(*replayed, options.live);

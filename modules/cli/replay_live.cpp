@@ -3,9 +3,10 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <fstream>
 
 #include "bus/lcm_bus.hpp"
+#include "cli/end_request.hpp"
+#include "cli/map_file.hpp"
 #include "cli/replay.hpp"
 #include "cli/stack.hpp"
 #include "cli/stack_watch.hpp"
@@ -45,7 +46,7 @@ class LiveStack {
   }
 
   [[nodiscard]] Result<void> start() {
-    std::ofstream(site_.state / "site.yaml") << to_yaml(site_);
+    if (auto written = write_file(site_.state / "site.yaml", to_yaml(site_)); !written) return written;
     return start_stack(supervisor_, {site_.state / "site.yaml", site_.lcm_url, {}, site_.state});
   }
   [[nodiscard]] Result<void> play(const std::filesystem::path& log) {

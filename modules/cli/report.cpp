@@ -1,8 +1,9 @@
 #include "cli/report.hpp"
 
+#include <cstdlib>
 #include <memory>
 
-#include "cli/page.hpp"
+#include "cli/numbers.hpp"
 
 namespace concord {
 
@@ -11,6 +12,23 @@ tl::expected<AgentList, Failure> hear_agents(Live& live) {
   live.hear<AgentList>("out/agents", [list](const std::string&, AgentList heard) { *list = std::move(heard); });
   if (!live.wait(live.timeout(), [&] { return list->has_value(); })) return live.no_answer("merge");
   return **list;
+}
+
+std::string author_or_user(const std::string& author) {
+  if (!author.empty()) return author;
+  const char* user = std::getenv("USER");
+  return user != nullptr && is_name(user) ? user : "cli";
+}
+
+tl::unexpected<Failure> bad_name(const std::string& name) {
+  return fail(Exit::kUnusable, "BAD_NAME",
+              name + " is no name: 1 to 40 of A-Z a-z 0-9 . _ -, beginning with a letter or digit");
+}
+
+Outcome print_answer(const tl::expected<Answer, Failure>& answer, const Common& common) {
+  if (!answer) return tl::unexpected(answer.error());
+  common.print(to_json(*answer), answer->process + ": " + (answer->message.empty() ? "done" : answer->message));
+  return Exit::kDone;
 }
 
 std::array<double, 7> to_numbers(const Transform& transform) {
@@ -59,6 +77,17 @@ std::string to_words(const Path& path) {
   return "path of " + format_number(path.length, 2) + " m, " + std::to_string(path.points.size()) +
          " points, least clearance " + format_number(path.least_clearance, 2) + " m" +
          (path.active ? "; it is kept up to date" : "");
+}
+
+Exit print_path(const Path& path, const Common& common) {
+  common.print(to_json(path), to_words(path));
+  return path.status == "OK" ? Exit::kDone : Exit::kNegative;
+}
+
+Overview::Route to_route(const Path& path) {
+  Overview::Route route{path.status, {}, path.length};
+  for (const Eigen::Vector3d& p : path.points) route.points.emplace_back(p.head<2>());
+  return route;
 }
 
 }  // namespace concord

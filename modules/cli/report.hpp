@@ -5,11 +5,18 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/live.hpp"
+#include "cli/overview.hpp"
 
 namespace concord {
 
 /// The next list of agents that merge says. Fails with kNoAnswer.
 [[nodiscard]] tl::expected<AgentList, Failure> hear_agents(Live& live);
+
+/// Who asks: as named, else $USER, else "cli".
+[[nodiscard]] std::string author_or_user(const std::string& author);
+[[nodiscard]] tl::unexpected<Failure> bad_name(const std::string& name);
+/// Prints what the stack did, or hands on its refusal.
+[[nodiscard]] Outcome print_answer(const tl::expected<Answer, Failure>& answer, const Common& common);
 
 /// "x y z qx qy qz qw" as numbers.
 [[nodiscard]] std::array<double, 7> to_numbers(const Transform& transform);
@@ -20,5 +27,9 @@ namespace concord {
 
 /// The path in a line for a person.
 [[nodiscard]] std::string to_words(const Path& path);
+/// Prints it. @return kNegative where there is none.
+[[nodiscard]] Exit print_path(const Path& path, const Common& common);
+/// As it is drawn.
+[[nodiscard]] Overview::Route to_route(const Path& path);
 
 }  // namespace concord

@@ -1,13 +1,7 @@
 #include "cli/stack.hpp"
 
-#include <signal.h>
-
 namespace concord {
 namespace {
-
-volatile sig_atomic_t end_was_requested = 0;
-
-constexpr const char* kProcesses[] = {"ingest", "merge", "planner"};
 
 std::filesystem::path output_of(const StackSpec& spec, const std::string& name) {
   return spec.output.empty() ? std::filesystem::path() : spec.output / (name + ".txt");
@@ -17,7 +11,10 @@ std::filesystem::path output_of(const StackSpec& spec, const std::string& name) 
 
 Result<void> start_stack(Supervisor& supervisor, const StackSpec& spec) {
   if (!spec.log.empty()) {
-    if (std::filesystem::exists(spec.log)) {
+    std::error_code error;
+    const bool exists = std::filesystem::exists(spec.log, error);
+    if (error) return refuse(Code::kIo, "cannot write " + spec.log.string() + ": " + error.message());
+    if (exists) {
       return refuse(Code::kExists, spec.log.string() + " exists; name another log or remove it");
     }
     const auto started = supervisor.start({.name = "lcm-logger",
@@ -26,7 +23,7 @@ Result<void> start_stack(Supervisor& supervisor, const StackSpec& spec) {
                                            .restart = false});
     if (!started) return started;
   }
-  for (const std::string name : kProcesses) {
+  for (const std::string name : kStackProcesses) {
     std::vector<std::string> command = {program_folder() / ("concord-" + name)};
     if (!spec.site_file.empty()) command.insert(command.end(), {"--site", spec.site_file});
     const auto started = supervisor.start({.name = name, .command = command, .output = output_of(spec, name)});
@@ -34,14 +31,5 @@ Result<void> start_stack(Supervisor& supervisor, const StackSpec& spec) {
   }
   return {};
 }
-
-void end_on_signals() {
-  struct sigaction action = {};
-  action.sa_handler = [](int) { end_was_requested = 1; };
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-}
-
-bool end_requested() { return end_was_requested != 0; }
 
 }  // namespace concord

@@ -7,6 +7,8 @@
 
 namespace concord {
 
+inline constexpr const char* kStackProcesses[] = {"ingest", "merge", "planner"};
+
 /// What runs as one stack.
 struct StackSpec {
   std::filesystem::path site_file;  ///< empty: defaults
@@ -19,9 +21,5 @@ struct StackSpec {
 /// Refused: a program that is not beside this one, or a logger that is not installed (kIo); a log that exists
 /// (kExists).
 [[nodiscard]] Result<void> start_stack(Supervisor& supervisor, const StackSpec& spec);
-
-/// Set by SIGINT and SIGTERM once `end_on_signals` was called.
-void end_on_signals();
-[[nodiscard]] bool end_requested();
 
 }  // namespace concord

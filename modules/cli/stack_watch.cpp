@@ -4,6 +4,8 @@
 
 #include <xxhash.h>
 
+#include "cli/stack.hpp"
+
 namespace concord {
 namespace {
 
@@ -74,7 +76,8 @@ void StackWatch::hear(const std::string& channel_regex, Take take) {
 }
 
 bool StackWatch::awake() const {
-  return statuses_.contains("ingest") && statuses_.contains("merge") && statuses_.contains("planner") && synced();
+  const auto runs = [this](const char* process) { return statuses_.contains(process); };
+  return std::ranges::all_of(kStackProcesses, runs) && synced();
 }
 
 bool StackWatch::synced() const {

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/live.hpp"
-#include "cli/page.hpp"
+#include "cli/numbers.hpp"
 #include "cli/report.hpp"
 
 namespace concord {

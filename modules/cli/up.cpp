@@ -1,15 +1,15 @@
 #include <cstdio>
 #include <memory>
 
-#include "bus/site.hpp"
 #include "cli/command.hpp"
+#include "cli/end_request.hpp"
 #include "cli/stack.hpp"
 
 namespace concord {
 namespace {
 
 Outcome up(const std::string& log, const Common& common) {
-  const Site site = common.site_file.empty() ? Site{} : load_site(common.site_file);
+  const Site site = common.site();
   end_on_signals();
   Supervisor supervisor([](const std::string& line) { std::fprintf(stderr, "concord: %s\n", line.c_str()); });
   const auto started = start_stack(supervisor, {common.site_file, site.lcm_url, log, {}});

@@ -57,7 +57,7 @@ class Commands : public testing::Test {
 
   Ran run(const std::vector<std::string>& arguments) {
     Program program;
-    for (const auto add : {add_info, add_merge, add_project, add_plan, add_requests, add_up}) add(program);
+    for (const auto add : {add_info, add_merge, add_project, add_plan, add_edit, add_requests, add_up}) add(program);
     std::vector<const char*> argv = {"concord"};
     for (const std::string& argument : arguments) argv.push_back(argument.c_str());
     testing::internal::CaptureStdout();
@@ -83,7 +83,7 @@ TEST_F(Commands, AFileThatCannotBeReadIsToldInTheFormAskedFor) {
   const Ran words = run({"info", file("none.bt")});
   EXPECT_EQ(words.exit, 2);
   EXPECT_EQ(words.out, "");
-  EXPECT_NE(words.err.find("does not exist"), std::string::npos);
+  EXPECT_NE(words.err.find("No such file"), std::string::npos);
   std::ofstream(file("bad.bt")) << "no map";
   const Ran json = run({"info", file("bad.bt"), "--json"});
   EXPECT_EQ(json.exit, 2);
@@ -180,11 +180,62 @@ TEST_F(Commands, PlanGoesThroughTheDoorOrSaysWhyNot) {
   EXPECT_TRUE(wide.json()["length"].is_null());
 }
 
+TEST_F(Commands, PlanTakesBandAndRadiusFromTheSiteAndSaysPointsInSpace) {
+  std::ofstream(file("site.yaml")) << "planner: {zmin: 0, zmax: 1}\nagents: {unlisted: {radius: 0.4}}\n";
+  const std::vector<std::string> base = {"plan", "--map", file("room.bt"), "--from", "1 1.5",
+                                         "--to", "3 1.5", "--json",        "--site", file("site.yaml")};
+  EXPECT_EQ(run(base).json()["status"], "NO_VALID_PATH");
+  std::vector<std::string> narrow = base;
+  narrow.insert(narrow.end(), {"--radius", "0.2"});
+  const nlohmann::json path = run(narrow).json();
+  EXPECT_EQ(path["status"], "OK");
+  EXPECT_EQ(path["points"].front().size(), 3U);
+  narrow.back() = "0";
+  EXPECT_EQ(run(narrow).exit, 2) << "on the wire it would mean the site's";
+}
+
 TEST_F(Commands, PlanNeedsAMapOrARobot) {
   EXPECT_EQ(run({"plan", "--to", "1 1"}).exit, 2);
   EXPECT_EQ(run({"plan", "--to", "1 1", "--map", file("room.bt")}).exit, 2);
   EXPECT_EQ(run({"plan", "--to", "1", "--robot", "robot1"}).exit, 2);
   EXPECT_EQ(run({"plan", "--to", "1 1", "--robot", "../robot"}).exit, 2);
+}
+
+TEST_F(Commands, UsageIsToldInTheFormAskedFor) {
+  const Ran ran = run({"merge", "--json", file("room.bt")});
+  EXPECT_EQ(ran.exit, 2);
+  EXPECT_EQ(ran.json()["error"]["code"], "USAGE");
+  EXPECT_EQ(ran.err, "");
+}
+
+TEST_F(Commands, ANameThatTheSystemRefusesIsTwo) {
+  const Ran ran = run({"--json", "up", "--log", std::string(300, 'a')});
+  EXPECT_EQ(ran.exit, 2);
+  EXPECT_EQ(ran.json()["error"]["code"], "IO");
+}
+
+TEST_F(Commands, AnExceptionIsAFailureLikeOthers) {
+  Program program;
+  program.add("fall", "", [](const Common&) -> Outcome { throw std::runtime_error("no room"); });
+  const char* argv[] = {"concord", "fall"};
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(program.run(2, argv), 2);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("no room"), std::string::npos);
+}
+
+TEST_F(Commands, AVoxelFileIsTakenWholeOrNotAtAll) {
+  for (const char* text : {"1 2 3\n4 5\n", "1 2 3\n4 5 6 7\n", "1 2 3\n4 5 x\n", "1 2 3\n4 5 99999999999\n"}) {
+    std::ofstream(file("voxels.txt")) << text;
+    const Ran ran = run({"edit", "add", "--voxels", file("voxels.txt")});
+    EXPECT_EQ(ran.exit, 2) << text;
+    EXPECT_NE(ran.err.find("line 2"), std::string::npos) << ran.err;
+  }
+  std::ofstream out(file("voxels.txt"));
+  for (int i = 0; i <= 1'000'000; ++i) out << i << " 0 0\n";
+  out.close();
+  const Ran ran = run({"edit", "add", "--voxels", file("voxels.txt")});
+  EXPECT_EQ(ran.exit, 2);
+  EXPECT_NE(ran.err.find("TOO_LARGE"), std::string::npos) << ran.err;
 }
 
 TEST_F(Commands, ASiteFileThatCannotBeUsedIsNamed) {

@@ -17,10 +17,10 @@ class DemoReportTest : public testing::Test {
     AgentState state;
     state.id = "a";
     state.known = 512;
-    report.agents.push_back({state, &map, 1000, std::nullopt});
+    report.agents.push_back({state, &map, 1000});
     state.id = "b";
     state.known = 100;
-    report.agents.push_back({state, &map, 234, std::nullopt});
+    report.agents.push_back({state, &map, 234});
   }
 
   BrickMap map, conflicts;
@@ -55,12 +55,11 @@ TEST_F(DemoReportTest, ScoresTheMapAsItEnds) {
   EXPECT_EQ(json["features"]["glass"], (nlohmann::json{{"robot", 0.0}, {"merged", 0.1}, {"edited", 1.0}}));
 }
 
-TEST_F(DemoReportTest, OneAgentTakesTheSumAllTheLongest) {
-  report.agents[0].mapping_seconds = 60.0;
-  EXPECT_FALSE(report.mapping_alone());
-  report.agents[1].mapping_seconds = 40.0;
-  EXPECT_EQ(report.mapping_alone(), 100.0);
-  EXPECT_EQ(report.mapping_together(), 60.0);
+TEST_F(DemoReportTest, WhatOneAgentNeverMappedIsNull) {
+  report.all_agents_seconds = 40.0;
+  const nlohmann::json seconds = to_json(report)["mapping_seconds"];
+  EXPECT_EQ(seconds["all_agents"], 40.0);
+  EXPECT_TRUE(seconds["one_agent"].is_null());
 }
 
 TEST_F(DemoReportTest, ThePageShowsPathsAndHoldsNoForeignMarkup) {

@@ -1,10 +1,15 @@
 #include "cli/live.hpp"
 
+#include <signal.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <fstream>
 
 #include <gtest/gtest.h>
+
+#include "cli/downsample.hpp"
+#include "cli/end_request.hpp"
 
 namespace concord {
 namespace {
@@ -105,6 +110,52 @@ TEST_F(LiveTest, CopiesAStreamWhole) {
   sender.begin("map");
   ASSERT_TRUE(copy.wait_synced(live));
   EXPECT_EQ(copy.map(), map);
+}
+
+Downsampled part_of(const DownsampleRequest& asked, std::int32_t part) {
+  return {asked.id, asked.agent, "f", asked.resolution, part, 3, {Eigen::Vector3f(static_cast<float>(part), 0, 0)}};
+}
+
+TEST_F(LiveTest, ACloudThatIsOnItsWayIsNotAskedForAgain) {
+  Live live(common);
+  int asked = 0;
+  std::int32_t sent = 0;
+  const DownsampleRequest request{live.new_id(), "robot1", 0.5};
+  live.hear<DownsampleRequest>("in/downsample", [&](const std::string&, const DownsampleRequest&) { ++asked; });
+  live.bus().every(600'000, [&] {
+    if (asked > 0 && sent < 3) live.bus().publish("out/downsampled", encode(part_of(request, sent++), 0));
+  });
+  const auto points = request_cloud(live, request);
+  ASSERT_TRUE(points);
+  EXPECT_EQ(points->size(), 3U);
+  EXPECT_EQ(asked, 1);
+}
+
+TEST_F(LiveTest, ACloudOfWhichAPartWasLostIsAskedForAgain) {
+  Live live(common);
+  int asked = 0;
+  live.hear<DownsampleRequest>("in/downsample", [&](const std::string&, const DownsampleRequest& heard) {
+    for (std::int32_t part = asked++ == 0 ? 1 : 0; part < 3; ++part) {
+      live.bus().publish("out/downsampled", encode(part_of(heard, part), 0));
+    }
+  });
+  const auto points = request_cloud(live, {live.new_id(), "robot1", 0.5});
+  ASSERT_TRUE(points);
+  EXPECT_EQ(points->size(), 3U);
+  EXPECT_EQ(asked, 2);
+}
+
+TEST_F(LiveTest, EveryWaitEndsWhenAPersonEndsTheProgram) {
+  const auto interrupted = [&] {
+    alarm(10);  // not a minute
+    Live live(common);
+    end_on_signals();
+    live.bus().every(100'000, [] { raise(SIGINT); });
+    const bool came = live.wait(60.0, [] { return false; }) || live.wait_while_moving(
+                                                                   60.0, [] { return 0; }, [] { return false; });
+    std::exit(came ? 1 : 0);
+  };
+  EXPECT_EXIT(interrupted(), testing::ExitedWithCode(0), "");
 }
 
 TEST_F(LiveTest, AStreamThatNobodySendsIsFive) {

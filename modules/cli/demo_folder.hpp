@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "core/error.hpp"
+
+namespace concord {
+
+/// The folder a demo writes to, and what it writes there.
+struct DemoFolder {
+  std::filesystem::path path;
+
+  [[nodiscard]] std::filesystem::path state() const { return path / "demo_state"; }
+  [[nodiscard]] std::filesystem::path output() const { return path / "demo_output"; }  ///< what the processes print
+  [[nodiscard]] std::filesystem::path log() const { return path / "demo.lcm"; }
+  [[nodiscard]] std::filesystem::path map() const { return path / "map.bt"; }
+  [[nodiscard]] std::filesystem::path site() const { return path / "site.yaml"; }
+
+  /// Makes it, without what an earlier demo wrote there; other things may lie in it and stay.
+  /// Refused, with nothing touched: files of such names that no demo wrote (kExists), one of `inputs` that would be
+  /// written over (kBadRequest). Refused: kIo.
+  [[nodiscard]] Result<void> prepare(const std::vector<std::filesystem::path>& inputs) const;
+};
+
+}  // namespace concord

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "agent/sim/score.hpp"
+#include "core/brick_map.hpp"
+#include "core/transform.hpp"
+
+namespace concord {
+
+/// How far a demo's mapping had come.
+struct MappingMoment {
+  double seconds = 0.0;  ///< simulated, since the agents set out
+  BrickMap merged;       ///< occupied voxels only, as in `robot`
+  BrickMap robot;        ///< of the first robot alone, its own frame
+};
+
+/// The occupied voxels of a map.
+[[nodiscard]] BrickMap occupied_part(const BrickMap& map);
+
+/// Measures maps of the simulated warehouse against it.
+class DemoScorer {
+ public:
+  DemoScorer(const World& world, double resolution, Transform T_map_robot);
+
+  [[nodiscard]] MapScore merged(const BrickMap& map) const { return score(map, truth_); }
+  /// Of a submap in the robot's own frame.
+  [[nodiscard]] MapScore robot(const BrickMap& submap) const;
+
+  /// Simulated seconds until the merged map, or the robot's own, showed this share of the surface; absent where none
+  /// of the moments does. @pre moments are in order of time: what was shown is taken to stay shown.
+  [[nodiscard]] std::optional<double> merged_reached(const std::vector<MappingMoment>& moments, double recall) const;
+  [[nodiscard]] std::optional<double> robot_reached(const std::vector<MappingMoment>& moments, double recall) const;
+
+ private:
+  double resolution_;
+  Transform T_map_robot_;
+  Truth truth_;
+};
+
+}  // namespace concord

@@ -1,0 +1,80 @@
+#include <cstdint>
+#include <fstream>
+#include <memory>
+#include <sstream>
+
+#include "cli/arguments.hpp"
+#include "cli/live.hpp"
+#include "cli/report.hpp"
+
+namespace concord {
+namespace {
+
+struct Options {
+  std::string op, box, file, author;
+};
+
+/// One voxel: three whole numbers and nothing else. Absent where the line holds anything else.
+std::optional<VoxelIndex> parse_voxel(const std::string& line) {
+  std::istringstream in(line);
+  VoxelIndex v;
+  std::string more;
+  if (!(in >> v.x >> v.y >> v.z) || in >> more) return std::nullopt;
+  return v;
+}
+
+Result<std::vector<VoxelIndex>> read_voxels(const std::string& file) {
+  std::ifstream in(file);
+  if (!in) return refuse(Code::kNotFound, "cannot read " + file);
+  std::vector<VoxelBox> boxes;
+  std::int64_t number = 0;
+  for (std::string line; std::getline(in, line);) {
+    ++number;
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    const auto voxel = parse_voxel(line);
+    if (!voxel) {
+      return refuse(Code::kMalformed, file + ", line " + std::to_string(number) +
+                                          ": must hold one voxel, three whole numbers (map lattice)");
+    }
+    if (static_cast<std::int64_t>(boxes.size()) == kMaxEditVoxels) {
+      return refuse(Code::kTooLarge, file + ", line " + std::to_string(number) + ": one edit holds at most " +
+                                         std::to_string(kMaxEditVoxels) + " voxels; give it in parts");
+    }
+    boxes.push_back({*voxel, *voxel});
+  }
+  if (in.bad()) return refuse(Code::kIo, "cannot read " + file + " to its end");
+  return expand(boxes, kMaxEditVoxels);
+}
+
+Result<std::vector<VoxelIndex>> voxels_of(const Options& options, double resolution) {
+  if (!options.file.empty()) return read_voxels(options.file);
+  return parse_box(options.box, resolution).and_then([](const VoxelBox& box) {
+    return expand(std::span(&box, 1), kMaxEditVoxels);
+  });
+}
+
+Outcome edit(const Options& options, const Common& common) {
+  if (options.file.empty() == options.box.empty()) {
+    return fail(Exit::kUnusable, "USAGE", "edit needs either --box or --voxels");
+  }
+  auto voxels = voxels_of(options, common.site().resolution);
+  if (!voxels) return fail(voxels.error());
+  Live live(common);
+  const auto op = options.op == "add" ? EditRequest::Op::kAdd : EditRequest::Op::kDelete;
+  const EditRequest request{live.new_id(), author_or_user(options.author), op, std::move(*voxels), live.bus().now()};
+  return print_answer(live.ask("in/edit", encode(request, live.site().resolution), request.id), common);
+}
+
+}  // namespace
+
+void add_edit(Program& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App& pin = program.add("edit", "pins voxels of the map, above every sensor",
+                              [options](const Common& common) { return edit(*options, common); });
+  pin.add_option("op", options->op, "add or delete")->required()->check(CLI::IsMember({"add", "delete"}));
+  pin.add_option("--box", options->box, "\"x0 y0 z0 x1 y1 z1\", metres: every voxel that shares volume with it");
+  pin.add_option("--voxels", options->file, "a file with three indices a line, map lattice");
+  pin.add_option("--author", options->author, "who edits; without it $USER");
+}
+
+}  // namespace concord
