@@ -23,22 +23,29 @@ BrickReceiver& StreamGaps::receiver(const std::string& stream) {
 void StreamGaps::hear(std::int64_t utime, const std::string& channel, std::span<const std::uint8_t> bytes) {
   bus_.advance_to(utime);
   if (channel.ends_with("/bricks")) {
-    if (const auto packet = decode<BrickPacket>(bytes)) receiver(before_last_slash(channel)).on_packet(*packet);
+    const auto packet = decode<BrickPacket>(bytes);
+    if (!packet) return unreadable(channel);
+    receiver(before_last_slash(channel)).on_packet(*packet);
   } else if (channel.ends_with("/digest")) {
-    if (const auto digest = decode<BrickDigest>(bytes)) receiver(before_last_slash(channel)).on_digest(*digest);
+    const auto digest = decode<BrickDigest>(bytes);
+    if (!digest) return unreadable(channel);
+    receiver(before_last_slash(channel)).on_digest(*digest);
   } else if (channel.ends_with("/cloud")) {
     const auto cloud = decode<CloudMessage>(bytes);
-    if (!cloud || cloud->sequence >= kMostClouds) return;
+    if (!cloud || cloud->sequence >= kMostClouds) return unreadable(channel);
     Clouds& clouds = clouds_[channel];
     clouds.frame_id = cloud->frame_id;
     clouds.heard[cloud->frame_id][cloud->boot_id].add(cloud->sequence + 1, cloud->sequence + 1);
+  } else if (channel.ends_with("/octomap")) {
+    if (!decode<OctomapMessage>(bytes)) unreadable(channel);
   }
 }
 
 std::vector<StreamGaps::Gap> StreamGaps::gaps() const {
-  std::map<std::string, std::int64_t> missing;
+  std::map<std::string, std::int64_t> missing = unreadable_;
   for (const auto& [stream, receiver] : streams_) {
-    if (receiver->heard() && !receiver->synced()) missing[stream + "/bricks"] = receiver->missing();
+    // One that was never heard has another resolution than the site: nothing of it was taken.
+    if (!receiver->synced()) missing[stream + "/bricks"] = receiver->missing();
   }
   for (const auto& [channel, clouds] : clouds_) {
     std::int64_t count = 0;

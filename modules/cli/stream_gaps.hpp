@@ -12,12 +12,13 @@
 namespace concord {
 
 /// What is missing in a recording. A logger cannot ask for what it missed: it shows as versions of a brick stream that
-/// were announced but never came, and as clouds whose number never came.
+/// were announced but never came, and as clouds whose number never came. What another release or another site recorded
+/// and this one cannot take is missing as well.
 class StreamGaps {
  public:
   struct Gap {
     std::string channel;
-    std::int64_t missing = 0;  ///< versions or clouds; 0: how much there was is not known either
+    std::int64_t missing = 0;  ///< versions, clouds or unreadable messages; 0: how much there was is not known either
   };
 
   /// @pre `start` is not after the first message.
@@ -36,12 +37,14 @@ class StreamGaps {
   };
 
   BrickReceiver& receiver(const std::string& stream);
+  void unreadable(const std::string& channel) { ++unreadable_[channel]; }
 
   double resolution_;
   LockstepBus bus_;  ///< its receivers ask for repairs, and nobody hears them
   Counters counters_;
   std::map<std::string, std::unique_ptr<BrickReceiver>> streams_;
   std::map<std::string, Clouds> clouds_;
+  std::map<std::string, std::int64_t> unreadable_;  ///< by channel
 };
 
 }  // namespace concord

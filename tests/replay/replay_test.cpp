@@ -128,6 +128,28 @@ TEST_F(ReplayTest, clouds_that_the_logger_missed_are_named) {
   EXPECT_EQ(result["gaps"][0]["missing"], 1);
 }
 
+TEST_F(ReplayTest, a_stream_that_this_release_cannot_read_is_named) {
+  std::vector<LogEvent> events = session();
+  for (LogEvent& event : events) {
+    if (event.channel.starts_with("in/robot2/")) event.bytes[0] ^= 1;  // the type's fingerprint
+  }
+  const auto [exit, result] = run({write(events)});
+  EXPECT_EQ(exit, 4);
+  ASSERT_EQ(result["gaps"].size(), 2U);
+  EXPECT_EQ(result["gaps"][0]["channel"], "in/robot2/bricks");
+  EXPECT_EQ(result["gaps"][1]["channel"], "in/robot2/digest");
+}
+
+TEST_F(ReplayTest, streams_of_another_resolution_than_the_sites_are_named) {
+  const auto site = folder_.path() / "site.yaml";
+  std::ofstream(site) << "resolution: 0.1\n";
+  const auto [exit, result] = run({"--site", site, write(session())});
+  EXPECT_EQ(exit, 4);
+  ASSERT_EQ(result["gaps"].size(), 2U);
+  EXPECT_EQ(result["gaps"][0]["channel"], "in/robot1/bricks");
+  EXPECT_EQ(result["gaps"][1]["channel"], "in/robot2/bricks");
+}
+
 TEST_F(ReplayTest, expectations_are_compared) {
   const auto log = write(session());
   const auto [exit, result] = run({log});
