@@ -140,12 +140,14 @@ DemoRun::Step DemoRun::follow_mapping() {
 
 void DemoRun::note_moment() {
   if (!scene_.world) return;
-  double seconds = 0;
-  for (const DemoAgent& agent : scene_.agents) {
-    seconds = std::max(seconds, agent.way_seconds * static_cast<double>(watch_->progress(agent)) / 100);
-  }
-  const StreamCopy& robot = *copies_->agents.at(scene_.agents.front().id);
-  moments_.push_back({seconds, occupied_part(copies_->map.map()), occupied_part(robot.map())});
+  const auto on_its_way = [this](const DemoAgent& agent) {
+    return agent.way_seconds * static_cast<double>(watch_->progress(agent)) / 100;
+  };
+  const DemoAgent& robot = scene_.agents.front();
+  double longest = 0;
+  for (const DemoAgent& agent : scene_.agents) longest = std::max(longest, on_its_way(agent));
+  moments_.push_back({longest, on_its_way(robot), occupied_part(copies_->map.map()),
+                      occupied_part(copies_->agents.at(robot.id)->map())});
 }
 
 void DemoRun::say_progress() const {

@@ -12,10 +12,11 @@ namespace {
 int threads() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
 
 template <class Reached>
-std::optional<double> first_that(const std::vector<MappingMoment>& moments, Reached reached) {
+std::optional<double> first_that(const std::vector<MappingMoment>& moments, double MappingMoment::*seconds,
+                                 Reached reached) {
   const auto first =
       std::ranges::partition_point(moments, [&](const MappingMoment& moment) { return !reached(moment); });
-  return first == moments.end() ? std::nullopt : std::optional(first->seconds);
+  return first == moments.end() ? std::nullopt : std::optional(*first.*seconds);
 }
 
 }  // namespace
@@ -45,11 +46,13 @@ MapScore DemoScorer::robot(const BrickMap& submap) const {
 }
 
 std::optional<double> DemoScorer::merged_reached(const std::vector<MappingMoment>& moments, double recall) const {
-  return first_that(moments, [&](const MappingMoment& moment) { return merged(moment.merged).recall >= recall; });
+  return first_that(moments, &MappingMoment::seconds,
+                    [&](const MappingMoment& moment) { return merged(moment.merged).recall >= recall; });
 }
 
 std::optional<double> DemoScorer::robot_reached(const std::vector<MappingMoment>& moments, double recall) const {
-  return first_that(moments, [&](const MappingMoment& moment) { return robot(moment.robot).recall >= recall; });
+  return first_that(moments, &MappingMoment::robot_seconds,
+                    [&](const MappingMoment& moment) { return robot(moment.robot).recall >= recall; });
 }
 
 }  // namespace concord

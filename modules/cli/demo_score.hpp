@@ -11,9 +11,10 @@ namespace concord {
 
 /// How far a demo's mapping had come.
 struct MappingMoment {
-  double seconds = 0.0;  ///< simulated, since the agents set out
-  BrickMap merged;       ///< occupied voxels only, as in `robot`
-  BrickMap robot;        ///< of the first robot alone, its own frame
+  double seconds = 0.0;        ///< simulated, since the agents set out, of whoever is on its way the longest
+  double robot_seconds = 0.0;  ///< of the first robot: it stands when its way is over
+  BrickMap merged;             ///< occupied voxels only, as in `robot`
+  BrickMap robot;              ///< of the first robot alone, its own frame
 };
 
 /// The occupied voxels of a map.

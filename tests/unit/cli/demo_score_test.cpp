@@ -32,9 +32,9 @@ TEST(DemoScore, TellsWhenASurfaceWasShownOrThatItNeverWas) {
   }
   const DemoScorer scorer(world, kResolution, Transform::Identity());
   ASSERT_GT(scorer.merged(all).recall, 0.9);
-  const std::vector<MappingMoment> moments = {{0, {}, {}}, {10, {}, {}}, {20, all, {}}, {30, all, all}};
+  const std::vector<MappingMoment> moments = {{0, 0, {}, {}}, {10, 10, {}, {}}, {20, 20, all, {}}, {30, 25, all, all}};
   EXPECT_EQ(scorer.merged_reached(moments, 0.9), 20.0);
-  EXPECT_EQ(scorer.robot_reached(moments, 0.9), 30.0);
+  EXPECT_EQ(scorer.robot_reached(moments, 0.9), 25.0);
   EXPECT_EQ(scorer.robot_reached({moments.begin(), moments.end() - 1}, 0.9), std::nullopt);
 }
 
