@@ -115,7 +115,7 @@ Scene random_scene(std::uint32_t seed) {
   Scene scene;
   scene.resolution = std::array{0.02, 0.05, 0.1, 0.25}[pick(random, 0, 3)];
   // Mostly around the origin, where signs change; at times far away, where precision is scarce.
-  const int far = pick(random, 0, 4) == 0 ? 300000 : 0;
+  const int far = pick(random, 0, 4) == 0 ? 30000 : 0;
   const VoxelIndex around{far + pick(random, -8, 8), pick(random, -8, 8) - far, pick(random, -8, 8)};
   const int layers = pick(random, 1, 4);
   for (int i = 0; i < layers; ++i) {

@@ -167,7 +167,7 @@ TEST(Scan, RefusesMorePointsOrStepsThanItsLimits) {
 }
 
 TEST(Scan, RaysEndAtTheStatedLength) {
-  const BrickMap map = after({sensor_at(0.05, 0.05, 0.05), 0, {{9e4f, 0.05f, 0.05f}}});
+  const BrickMap map = after({sensor_at(0.05, 0.05, 0.05), 0, {{2e3f, 0.05f, 0.05f}}});
   EXPECT_EQ(map.known_count(), static_cast<std::size_t>(kMaxRayLength));
   EXPECT_EQ(map.occupied_count(), 0u);
 }
