@@ -75,8 +75,16 @@ std::string words(const nlohmann::json& result, const std::vector<std::string>& 
   return text;
 }
 
+/// A log means what it says only at the site it was recorded at: the site file beside it, if no other is named.
+Site site_of(const Options& options, const Common& common) {
+  const std::filesystem::path beside = std::filesystem::path(options.log).parent_path() / "site.yaml";
+  std::error_code error;
+  if (common.site_file.empty() && std::filesystem::exists(beside, error)) return load_site(beside);
+  return common.site();
+}
+
 Outcome replay(const Options& options, const Common& common) {
-  const Site site = common.site();
+  const Site site = site_of(options, common);
   const auto replayed = options.live ? replay_live(options.log, site) : replay_lockstep(options.log, site);
   if (!replayed) return tl::unexpected(replayed.error());
   nlohmann::json result = to_json(*replayed, options.live);
