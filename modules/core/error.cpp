@@ -12,6 +12,7 @@ const char* name(Code code) {
     case Code::kBadResolution: return "RES_MISMATCH";
     case Code::kBadName: return "BAD_NAME";
     case Code::kBadRequest: return "BAD_REQUEST";
+    case Code::kBadShape: return "BAD_SHAPE";
     case Code::kOutOfBounds: return "OUT_OF_BOUNDS";
     case Code::kEmpty: return "EMPTY";
     case Code::kStale: return "STALE";

@@ -15,6 +15,7 @@ enum class Code {
   kBadResolution,
   kBadName,  ///< a name that is not on the whitelist for ids and files
   kBadRequest,
+  kBadShape,  ///< a line, area or volume that encloses nothing or crosses itself
   kOutOfBounds,
   kEmpty,
   kStale,
