@@ -55,28 +55,44 @@ tl::unexpected<Error> refuse_out_of_bounds() {
   return refuse(Code::kOutOfBounds, "the shape reaches beyond the map; is it in metres, and in the right frame?");
 }
 
-/// The voxels of a line's or an area's pieces: those they touch and those whose centre is within `radius` voxels.
+/// The voxels that a part of a line or an area touches, and those whose centre is within `radius` voxels of it.
+struct ThickPart {
+  const ConvexPiece& piece;
+  double radius;
+  VoxelRuns& runs;
+  std::int64_t& work;
+  ConvexCells touched{piece, kOnFace};
+  ConvexCells reachable{piece, kOnFace, radius};
+
+  [[nodiscard]] bool add_all() {
+    return visit_columns(reachable, work,
+                         [this](std::int32_t x, std::int32_t y, std::int32_t first, std::int32_t last) {
+                           return radius == 0 ? runs.add(x, y, first, last) : add_column(x, y, first, last);
+                         });
+  }
+
+  /// The part is convex, so what is near it in a column is in one run: looks for the two ends of that.
+  bool add_column(std::int32_t x, std::int32_t y, std::int32_t first, std::int32_t last) {
+    const auto is_near = [&](std::int32_t z) { return --work >= 0 && is_within(piece, {x, y, z}, radius); };
+    const auto add_touched = [&](std::int32_t z) { return !touched.holds({x, y, z}) || runs.add(x, y, z, z); };
+    for (; first <= last && !is_near(first); ++first) {
+      if (work < 0 || !add_touched(first)) return false;
+    }
+    for (; last > first && !is_near(last); --last) {
+      if (work < 0 || !add_touched(last)) return false;
+    }
+    return first > last || runs.add(x, y, first, last);
+  }
+};
+
 Result<std::vector<VoxelIndex>> gather_touched(const std::vector<ConvexPiece>& pieces, double radius,
                                                std::int64_t most) {
   VoxelRuns runs(most);
   std::int64_t work = work_for(most);
   for (const ConvexPiece& piece : pieces) {
-    const ConvexCells touched(piece, kOnFace), near(piece, kOnFace, radius);
-    if (!near.in_bounds()) return refuse_out_of_bounds();
-    const auto add = [&](std::int32_t x, std::int32_t y, std::int32_t first, std::int32_t last) {
-      if (radius == 0) return runs.add(x, y, first, last);
-      const auto is_near = [&](std::int32_t z) { return --work >= 0 && is_within(piece, {x, y, z}, radius); };
-      const auto add_touched = [&](std::int32_t z) { return !touched.holds({x, y, z}) || runs.add(x, y, z, z); };
-      // The piece is convex, so what is near it in a column is in one run: look for its two ends.
-      for (; first <= last && !is_near(first); ++first) {
-        if (work < 0 || !add_touched(first)) return false;
-      }
-      for (; last > first && !is_near(last); --last) {
-        if (work < 0 || !add_touched(last)) return false;
-      }
-      return first > last || runs.add(x, y, first, last);
-    };
-    if (!visit_columns(near, work, add) || !runs.end_part()) return refuse_too_many(most);
+    ThickPart part{piece, radius, runs, work};
+    if (!part.reachable.in_bounds()) return refuse_out_of_bounds();
+    if (!part.add_all() || !runs.end_part()) return refuse_too_many(most);
   }
   return runs.take();
 }
