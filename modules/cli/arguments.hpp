@@ -6,8 +6,8 @@
 #include <CLI/CLI.hpp>
 
 #include "core/error.hpp"
+#include "core/shape.hpp"
 #include "core/transform.hpp"
-#include "core/voxel_boxes.hpp"
 
 namespace concord {
 
@@ -21,11 +21,9 @@ inline const CLI::Range kRobotRadius(0.001, 10.0);
 /// "x y z qx qy qz qw"; see make_transform for what is refused.
 [[nodiscard]] Result<Transform> parse_transform(const std::string& text);
 
-/// The voxels that share volume with a box given by two opposite corners, metres; a side without thickness takes the
-/// layer of voxels that begins there or holds it. So a pane drawn thinner than a voxel is still there.
-/// Refused: a box beyond the lattice (kOutOfBounds). @pre both corners are finite.
-[[nodiscard]] Result<VoxelBox> voxel_box(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double resolution);
-/// The same for "x0 y0 z0 x1 y1 z1".
-[[nodiscard]] Result<VoxelBox> parse_box(const std::string& text, double resolution);
+/// "x0 y0 z0 x1 y1 z1": two opposite corners, in any order.
+[[nodiscard]] Result<Box> parse_box(const std::string& text);
+/// "x y z x y z ...": at least one point.
+[[nodiscard]] Result<std::vector<Eigen::Vector3d>> parse_points(const std::string& text);
 
 }  // namespace concord

@@ -10,6 +10,10 @@
 namespace concord {
 namespace {
 
+Result<std::vector<VoxelIndex>> voxels_in(const Box& box, double resolution) {
+  return select(box, Transform::Identity(), resolution, kMaxEditVoxels);
+}
+
 Result<void> add_maps(const DemoOptions& options, DemoScene& scene) {
   const auto T_a_b = parse_transform(options.transform);
   if (!T_a_b) return tl::unexpected(T_a_b.error());
@@ -37,14 +41,16 @@ Result<void> add_warehouse(const DemoOptions& options, DemoScene& scene) {
   scene.start = scene.world->through_glass.from;
   scene.goal = scene.world->through_glass.to;
   // What no sensor returns, but a person sees.
-  std::vector<VoxelBox> boxes;
+  std::vector<VoxelIndex> voxels;
   for (const Feature& feature : scene.world->features) {
     if (!feature.edit_box || (feature.name != "glass" && feature.name != "reflective plate")) continue;
-    const auto box = voxel_box(feature.edit_box->min(), feature.edit_box->max(), scene.resolution);
-    if (!box) return tl::unexpected(box.error());
-    boxes.push_back(*box);
+    const auto part = voxels_in({feature.edit_box->min(), feature.edit_box->max()}, scene.resolution);
+    if (!part) return tl::unexpected(part.error());
+    voxels.insert(voxels.end(), part->begin(), part->end());
   }
-  return expand(boxes, kMaxEditVoxels).map([&](std::vector<VoxelIndex> voxels) { scene.edit = std::move(voxels); });
+  std::ranges::sort(voxels);
+  scene.edit = std::move(voxels);
+  return {};
 }
 
 Result<void> add_wishes(const DemoOptions& options, DemoScene& scene) {
@@ -57,8 +63,8 @@ Result<void> add_wishes(const DemoOptions& options, DemoScene& scene) {
     scene.goal = *to;
   }
   if (options.edit_box.empty()) return {};
-  return parse_box(options.edit_box, scene.resolution)
-      .and_then([](const VoxelBox& box) { return expand(std::span(&box, 1), kMaxEditVoxels); })
+  return parse_box(options.edit_box)
+      .and_then([&](const Box& box) { return voxels_in(box, scene.resolution); })
       .map([&](std::vector<VoxelIndex> voxels) { scene.edit = std::move(voxels); });
 }
 

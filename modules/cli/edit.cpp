@@ -6,12 +6,15 @@
 #include "cli/arguments.hpp"
 #include "cli/live.hpp"
 #include "cli/report.hpp"
+#include "core/shape.hpp"
+#include "core/voxel_boxes.hpp"
 
 namespace concord {
 namespace {
 
 struct Options {
-  std::string op, box, file, author;
+  std::string op, box, line, area, file, author;
+  double thickness = 0.0;
 };
 
 /// One voxel: three whole numbers and nothing else. Absent where the line holds anything else.
@@ -46,17 +49,26 @@ Result<std::vector<VoxelIndex>> read_voxels(const std::string& file) {
   return expand(boxes, kMaxEditVoxels);
 }
 
+Result<std::vector<VoxelIndex>> selected(const Result<Shape>& shape, double resolution) {
+  if (!shape) return tl::unexpected(shape.error());
+  return select(*shape, Transform::Identity(), resolution, kMaxEditVoxels);
+}
+
 Result<std::vector<VoxelIndex>> voxels_of(const Options& options, double resolution) {
-  if (!options.file.empty()) return read_voxels(options.file);
-  return parse_box(options.box, resolution).and_then([](const VoxelBox& box) {
-    return expand(std::span(&box, 1), kMaxEditVoxels);
-  });
+  if (!options.box.empty())
+    return selected(parse_box(options.box).map([](const Box& box) { return Shape(box); }), resolution);
+  const auto as_line = [&](std::vector<Eigen::Vector3d> points) {
+    return Shape(Line{std::move(points), options.thickness});
+  };
+  if (!options.line.empty()) return selected(parse_points(options.line).map(as_line), resolution);
+  const auto as_area = [&](std::vector<Eigen::Vector3d> points) {
+    return Shape(Area{std::move(points), options.thickness});
+  };
+  if (!options.area.empty()) return selected(parse_points(options.area).map(as_area), resolution);
+  return read_voxels(options.file);
 }
 
 Outcome edit(const Options& options, const Common& common) {
-  if (options.file.empty() == options.box.empty()) {
-    return fail(Exit::kUnusable, "USAGE", "edit needs either --box or --voxels");
-  }
   auto voxels = voxels_of(options, common.site().resolution);
   if (!voxels) return fail(voxels.error());
   Live live(common);
@@ -72,8 +84,13 @@ void add_edit(Program& program) {
   CLI::App& pin = program.add("edit", "pins voxels of the map, above every sensor",
                               [options](const Common& common) { return edit(*options, common); });
   pin.add_option("op", options->op, "add or delete")->required()->check(CLI::IsMember({"add", "delete"}));
-  pin.add_option("--box", options->box, "\"x0 y0 z0 x1 y1 z1\", metres: every voxel that shares volume with it");
-  pin.add_option("--voxels", options->file, "a file with three indices a line, map lattice");
+  auto* what = pin.add_option_group("selection", "what is pinned, in metres and the map frame");
+  what->add_option("--box", options->box, "\"x0 y0 z0 x1 y1 z1\": every voxel that shares volume with it");
+  what->add_option("--line", options->line, "\"x y z x y z ...\": every voxel that it touches");
+  what->add_option("--area", options->area, "\"x y z x y z ...\", a polygon: every voxel that it touches");
+  what->add_option("--voxels", options->file, "a file with three indices a line, map lattice");
+  what->require_option(1);
+  pin.add_option("--thickness", options->thickness, "of a line or area: voxels within half of it are pinned too");
   pin.add_option("--author", options->author, "who edits; without it $USER");
 }
 
