@@ -204,8 +204,10 @@ void IngestNode::on_cloud(const std::string& channel, const CloudMessage& messag
 }
 
 void IngestNode::changed(const std::string& id, const Change& change) {
-  store_.note(id, *ingest_.find(id), change);
-  streams_.tell(id, *ingest_.find(id), change);
+  const Agent& agent = *ingest_.find(id);
+  if (auto known = store_.introduce(id, agent); !known) counters_.refused("disk", known.error());
+  store_.note(id, agent, change);
+  streams_.tell(id, agent, change);
 }
 
 void IngestNode::write_some() {

@@ -122,6 +122,17 @@ void LayerStore::note(const std::string& id, const Agent& agent, const Change& c
   pending.bricks = {all.begin(), all.end()};
 }
 
+Result<void> LayerStore::introduce(const std::string& id, const Agent& agent) {
+  if (layers_.contains(id)) return {};
+  auto transaction = Transaction::begin(database_);
+  if (!transaction) return tl::unexpected(transaction.error());
+  const std::int64_t layer = ++last_layer_;
+  if (auto done = write_row(id, agent, layer); !done) return done;
+  if (auto done = transaction->commit(); !done) return done;
+  layers_[id] = layer;
+  return {};
+}
+
 void LayerStore::note(const std::string& id, BrickIndex index) { pending_[id].bricks.insert(index); }
 
 Result<void> LayerStore::flush(const std::map<std::string, Agent>& agents) {

@@ -36,6 +36,10 @@ class LayerStore {
   /// Everything that was written. A brick whose bytes are damaged is left out and told; the rest stands.
   [[nodiscard]] Result<Loaded> load();
 
+  /// Writes at once who a new agent is, its layer still empty: people may place it from the first moment, and a restart
+  /// must not take it for another. Does nothing for an agent that is on disk.
+  [[nodiscard]] Result<void> introduce(const std::string& id, const Agent& agent);
+
   /// The agent changed in memory; it will be written.
   void note(const std::string& id, const Agent& agent, const Change& change);
   void note(const std::string& id, BrickIndex index);
