@@ -9,13 +9,6 @@ namespace {
 
 constexpr std::int64_t kSecond = StreamWorld::kSecond;
 
-/// A slab of edge * edge bricks.
-void fill(StreamWorld& world, int edge, std::uint64_t seed = 1) {
-  for (int x = 0; x < edge; ++x) {
-    for (int y = 0; y < edge; ++y) world.set({x, y, 0}, noisy_brick(++seed));
-  }
-}
-
 TEST(BrickStream, another_frame_in_the_same_epoch_is_refused) {
   StreamWorld world;
   Copy& copy = world.join();

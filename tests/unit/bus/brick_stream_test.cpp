@@ -7,13 +7,6 @@ namespace {
 
 constexpr std::int64_t kSecond = StreamWorld::kSecond;
 
-/// A slab of edge * edge bricks.
-void fill(StreamWorld& world, int edge, std::uint64_t seed = 1) {
-  for (int x = 0; x < edge; ++x) {
-    for (int y = 0; y < edge; ++y) world.set({x, y, 0}, noisy_brick(++seed));
-  }
-}
-
 TEST(BrickStream, nothing_is_in_sync_before_a_digest_says_how_much_there_is) {
   StreamWorld world;
   Copy& copy = world.join();

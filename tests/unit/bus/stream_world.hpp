@@ -178,4 +178,11 @@ class StreamWorld {
   std::vector<std::unique_ptr<Copy>> copies_;
 };
 
+/// A slab of edge * edge bricks.
+inline void fill(StreamWorld& world, int edge, std::uint64_t seed = 1) {
+  for (int x = 0; x < edge; ++x) {
+    for (int y = 0; y < edge; ++y) world.set({x, y, 0}, noisy_brick(++seed));
+  }
+}
+
 }  // namespace concord::test
