@@ -29,6 +29,11 @@ Outcome merge(const Options& options, const Common& common) {
 
   const std::array<Layer, 2> layers = {Layer{&a->map, Transform::Identity(), options.weights[0]},
                                        Layer{&b->map, *T_a_b, options.weights[1]}};
+  if (!fits(layers[1], a->resolution)) {
+    return fail(Exit::kUnusable, name(Code::kOutOfBounds),
+                options.b + " would lie beyond the map's bounds there, " + format_number(kMaxVoxel * a->resolution, 0) +
+                    " m from the origin of " + options.a);
+  }
   const Policy policy = options.policy == "mean" ? Policy::kMean : Policy::kTable;
   const int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   const MergedMap merged = compose(layers, {}, policy, a->resolution, threads);

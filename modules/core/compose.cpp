@@ -183,6 +183,13 @@ FoldedTile fold_tile(const Plan& plan, const BrickSet::Entry& entry, std::vector
 
 }  // namespace
 
+bool fits(const Layer& layer, double resolution) {
+  const LatticeTransform lattice(layer.T_map_layer, resolution);
+  bool inside = true;
+  layer.map->for_each_brick([&](BrickIndex index, const Brick&) { inside = inside && lattice.keeps_in_bounds(index); });
+  return inside;
+}
+
 std::vector<FoldedBrick> fold(std::span<const Layer> layers, const PinMap& pins, Policy policy, double resolution,
                               const BrickSet& dirty, int threads) {
   const Plan plan(layers, pins, policy, resolution);

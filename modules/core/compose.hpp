@@ -18,6 +18,9 @@ struct Layer {
   int weight = 1;  ///< 1 to 1000
 };
 
+/// Whether all of the layer would lie within the map's bounds: what lies beyond them is in no fold.
+[[nodiscard]] bool fits(const Layer& layer, double resolution);
+
 /// One brick of the merged map.
 struct FoldedBrick {
   BrickIndex index;

@@ -64,16 +64,26 @@ Eigen::Vector3d LatticeTransform::half_extent_in_layer(const Eigen::Vector3d& si
   return half_abs_rotation_.transpose() * size;
 }
 
-void LatticeTransform::touch(VoxelIndex origin, int side, BrickSet& out) const {
+LatticeTransform::Reach LatticeTransform::reach_of(VoxelIndex origin, int side) const {
   const double half = 0.5 * side;
   const Eigen::Vector3d centre = to_map({origin.x + half, origin.y + half, origin.z + half});
   // Whole bricks keep clear of their neighbours; otherwise a little more, so that rounding cannot lose a voxel.
   const double margin = brick_shift_.has_value() ? -0.25 : 0.01;
   const Eigen::Vector3d extent = half_extent_in_map(Eigen::Vector3d::Constant(side)).array() + margin;
-  const Eigen::Vector3d low = (centre - extent).cwiseMax(-kMaxVoxel);
-  const Eigen::Vector3d high = (centre + extent).cwiseMin(kMaxVoxel - 0.5);
+  return {centre - extent, centre + extent};
+}
+
+void LatticeTransform::touch(VoxelIndex origin, int side, BrickSet& out) const {
+  const Reach reach = reach_of(origin, side);
+  const Eigen::Vector3d low = reach.low.cwiseMax(-kMaxVoxel);
+  const Eigen::Vector3d high = reach.high.cwiseMin(kMaxVoxel - 0.5);
   if ((low.array() > high.array()).any()) return;
   out.insert_box(brick_of(voxel_of(low, 1.0)), brick_of(voxel_of(high, 1.0)));
+}
+
+bool LatticeTransform::keeps_in_bounds(BrickIndex source) const {
+  const Reach reach = reach_of(origin_of(source), kBrickSide);
+  return reach.low.minCoeff() >= -kMaxVoxel && reach.high.maxCoeff() <= kMaxVoxel;
 }
 
 }  // namespace concord

@@ -26,6 +26,9 @@ class LatticeTransform {
   /// The same for all bricks of a tile at once; a larger set than touching each of them.
   void touch(TileIndex source, BrickSet& out) const { touch(origin_of(origin_of(source)), kTileVoxelSide, out); }
 
+  /// Whether all that a brick of the layer may contribute to lies in bounds.
+  [[nodiscard]] bool keeps_in_bounds(BrickIndex source) const;
+
   /// Points in voxels.
   [[nodiscard]] Eigen::Vector3d to_map(const Eigen::Vector3d& p_layer) const;
   [[nodiscard]] Eigen::Vector3d to_layer(const Eigen::Vector3d& p_map) const;
@@ -40,6 +43,11 @@ class LatticeTransform {
   [[nodiscard]] const PullSteps& pull_steps() const { return pull_steps_; }
 
  private:
+  struct Reach {
+    Eigen::Vector3d low, high;  ///< voxels, map
+  };
+  /// Around all that a cube of the layer may contribute to.
+  [[nodiscard]] Reach reach_of(VoxelIndex origin, int side) const;
   void touch(VoxelIndex origin, int side, BrickSet& out) const;
 
   Eigen::Matrix3d rotation_;

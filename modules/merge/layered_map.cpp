@@ -52,15 +52,7 @@ void LayeredMap::mark(const AgentLayer& layer) {
 
 bool LayeredMap::fits(const std::string& agent, const Transform& T_map_agent) const {
   const AgentLayer* layer = find(agent);
-  if (layer == nullptr) return true;
-  const LatticeTransform lattice(T_map_agent, resolution_);
-  constexpr double kTileRadius = kTileVoxelSide;  // more than half a tile's diagonal
-  const auto inside = [&](TileIndex tile) {
-    const VoxelIndex corner = origin_of(origin_of(tile));
-    const Eigen::Vector3d middle = Eigen::Vector3d(corner.x, corner.y, corner.z).array() + kTileVoxelSide / 2.0;
-    return lattice.to_map(middle).cwiseAbs().maxCoeff() + kTileRadius < kMaxVoxel;
-  };
-  return std::ranges::all_of(layer->map.sorted_tiles(), inside);
+  return layer == nullptr || concord::fits({&layer->map, T_map_agent, layer->weight}, resolution_);
 }
 
 LayeredMap::Changes LayeredMap::refold() {

@@ -127,6 +127,19 @@ TEST_F(Commands, MergeRefusesATransformThatIsNone) {
   }
 }
 
+TEST_F(Commands, MergeRefusesToLoseWhatLiesBeyondTheBounds) {
+  // At 0.1 m the map ends at 3276.8 m; the pillar is 0.4 m wide.
+  const auto merged = [&](const char* transform) {
+    return run(
+        {"merge", file("room.bt"), file("pillar.bt"), "--transform", transform, "--out", file("m.bt"), "--json"});
+  };
+  const Ran beyond = merged("3276.8 0 0 0 0 0 1");
+  EXPECT_EQ(beyond.exit, 2);
+  EXPECT_EQ(beyond.json()["error"]["code"], "OUT_OF_BOUNDS");
+  EXPECT_FALSE(fs::exists(file("m.bt")));
+  EXPECT_EQ(merged("3275.2 0 0 0 0 0 1").json()["occupied"], 14 * 10 + 40);
+}
+
 TEST_F(Commands, MergeLeavesNoFileWithAnUnknownExtension) {
   EXPECT_EQ(run({"merge", file("room.bt"), file("pillar.bt"), "--out", file("m.png")}).exit, 2);
   EXPECT_FALSE(fs::exists(file("m.png")));

@@ -169,6 +169,24 @@ TEST(Compose, LeavesOutWhatWouldLieOutOfBounds) {
   for (const auto& [tile, bricks] : dirty.sorted()) EXPECT_TRUE(in_bounds(origin_of(tile)));
 }
 
+TEST(Compose, ALayerFitsUpToTheLastBrickAndNotBeyond) {
+  BrickMap map;
+  map.set({kMaxVoxel / kBrickSide - 2, 0, 0}, Brick::uniform({1}, kOccupied));
+  Layer layer{&map, Transform::Identity(), 1};
+  const double resolution = 0.05;
+  const auto shifted = [&](double voxels) {
+    layer.T_map_layer.translation().x() = voxels * resolution;
+    return fits(layer, resolution);
+  };
+  EXPECT_TRUE(shifted(0));
+  EXPECT_TRUE(shifted(kBrickSide));
+  EXPECT_FALSE(shifted(2 * kBrickSide));
+  EXPECT_TRUE(shifted(3.5));
+  EXPECT_FALSE(shifted(kBrickSide + 1.5));
+  EXPECT_TRUE(shifted(-kMaxVoxel)) << "its lower bound is below";
+  EXPECT_FALSE(shifted(-3 * kMaxVoxel));
+}
+
 TEST(Compose, OfNothingIsEmpty) {
   EXPECT_TRUE(concord::compose({}, {}, Policy::kMean, 0.05).values.empty());
   EXPECT_TRUE(fold({}, {}, Policy::kMean, 0.05, {}).empty());
