@@ -17,6 +17,15 @@ void PinMap::set(VoxelIndex voxel, Pin pin) {
   if (brick == PinBrick{}) bricks_.erase(index);
 }
 
+bool PinMap::set(BrickIndex index, const PinBrick& pins) {
+  if (pins == PinBrick{}) return bricks_.erase(index) != 0;
+  const auto [it, created] = bricks_.try_emplace(index, pins);
+  if (created) return true;
+  if (it->second == pins) return false;
+  it->second = pins;
+  return true;
+}
+
 PinMap::Pin PinMap::at(VoxelIndex voxel) const {
   const PinBrick* brick = find(brick_of(voxel));
   if (brick == nullptr) return Pin::kNone;

@@ -23,6 +23,8 @@ class PinMap {
 
   /// Replaces what was pinned there; `kNone` takes the pin away.
   void set(VoxelIndex voxel, Pin pin);
+  /// Replaces all pins of a brick. Returns whether they changed.
+  bool set(BrickIndex index, const PinBrick& pins);
   [[nodiscard]] Pin at(VoxelIndex voxel) const;
   [[nodiscard]] const PinBrick* find(BrickIndex index) const;
   void clear() { bricks_.clear(); }
