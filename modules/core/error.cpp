@@ -16,6 +16,11 @@ const char* name(Code code) {
     case Code::kOutOfBounds: return "OUT_OF_BOUNDS";
     case Code::kEmpty: return "EMPTY";
     case Code::kStale: return "STALE";
+    case Code::kStaleRevision: return "STALE_REV";
+    case Code::kLocked: return "LOCKED";
+    case Code::kNotAligned: return "NOT_ALIGNED";
+    case Code::kCollision: return "COLLISION";
+    case Code::kConflict: return "CONFLICT";
     case Code::kNoAgent: return "NO_AGENT";
     case Code::kNoMap: return "NO_MAP";
     case Code::kNotFound: return "NOT_FOUND";

@@ -19,6 +19,11 @@ enum class Code {
   kOutOfBounds,
   kEmpty,
   kStale,
+  kStaleRevision,  ///< others changed it since the revision that the asker saw
+  kLocked,         ///< somebody else holds the region
+  kNotAligned,     ///< the agent's place in the map is not known
+  kCollision,      ///< what is moved would meet what is there
+  kConflict,       ///< it is so already, or was undone
   kNoAgent,
   kNoMap,
   kNotFound,

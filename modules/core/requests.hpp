@@ -11,7 +11,7 @@
 
 namespace concord {
 
-/// What people, robots and programs ask for. Each is a value the bus has already checked (names on the whitelist,
+/// What people, robots and programs ask for, beside corrections (core/corrections.hpp). Each is a value the bus has already checked (names on the whitelist,
 /// numbers finite, sizes capped); `id` is the asker's, and a request sent twice with one id is done once.
 
 /// Puts an agent's submap into the map.
@@ -21,16 +21,6 @@ struct TransformRequest {
   std::string agent;
   std::string frame_id;  ///< the agent's frame it was found for; empty: the present one
   Transform T_map_agent = Transform::Identity();
-};
-
-/// Pins voxels of the map, or takes them away, for good.
-struct EditRequest {
-  enum class Op { kAdd, kDelete };
-  std::string id;
-  std::string author;
-  Op op = Op::kAdd;
-  std::vector<VoxelIndex> voxels;  ///< map lattice; sorted, unique, in bounds
-  std::int64_t utime = 0;
 };
 
 /// Ends what an agent has sent: `kReset` keeps the agent and waits for a new frame, `kRemove` forgets it.
@@ -54,7 +44,7 @@ struct MapRequest {
   std::string id;
   Op op = Op::kSave;
   std::string map;     ///< name without extension
-  std::string format;  ///< "bt" or "ot"; empty with kLoad: whichever exists
+  std::string format;  ///< "bt", "ot" or "concord"; empty with kLoad: whichever exists
   bool overwrite = false;
   std::string agent;  ///< with kLoad; empty: the map's name
 };

@@ -56,6 +56,7 @@ struct Prism {
 
 /// Voxels of the map's lattice, wherever the shape's frame is.
 struct VoxelList {
+  double resolution = 0;  ///< of that lattice, metres
   std::vector<VoxelBox> boxes;
 };
 

@@ -1,0 +1,70 @@
+#include "core/corrections.hpp"
+
+#include <algorithm>
+
+namespace concord {
+namespace {
+
+using Kind = Operation::Kind;
+
+struct Summarise {
+  Operation& out;
+
+  void operator()(const Correction::Edit& edit) const {
+    switch (edit.op) {
+      case EditRequest::Op::kAdd: out.kind = Kind::kAdd; break;
+      case EditRequest::Op::kDelete: out.kind = Kind::kDelete; break;
+      case EditRequest::Op::kMove: out.kind = Kind::kMove; break;
+    }
+    out.count = static_cast<std::int64_t>(edit.added.size() + edit.deleted.size());
+    out.min = {kMaxVoxel, kMaxVoxel, kMaxVoxel};
+    out.max = {-kMaxVoxel, -kMaxVoxel, -kMaxVoxel};
+    for (const auto* voxels : {&edit.added, &edit.deleted}) {
+      for (const VoxelIndex v : *voxels) {
+        out.min = {std::min(out.min.x, v.x), std::min(out.min.y, v.y), std::min(out.min.z, v.z)};
+        out.max = {std::max(out.max.x, v.x), std::max(out.max.y, v.y), std::max(out.max.z, v.z)};
+      }
+    }
+  }
+  void operator()(const Correction::Undo& undo) const {
+    out.kind = undo.redo ? Kind::kRedo : Kind::kUndo;
+    out.subject = undo.edit_id;
+  }
+  void operator()(const Correction::ZoneChange& change) const {
+    switch (change.op) {
+      case ZoneRequest::Op::kAdd: out.kind = Kind::kZoneAdd; break;
+      case ZoneRequest::Op::kChange: out.kind = Kind::kZoneChange; break;
+      case ZoneRequest::Op::kDelete: out.kind = Kind::kZoneDelete; break;
+    }
+    out.subject = change.zone.name;
+  }
+  void operator()(const Correction::Placement& placement) const {
+    out.kind = Kind::kTransform;
+    out.subject = placement.agent;
+  }
+  void operator()(const Correction::Weight& weight) const {
+    out.kind = Kind::kWeight;
+    out.subject = weight.agent;
+  }
+};
+
+}  // namespace
+
+Operation summary(const Correction& correction, bool active) {
+  Operation out;
+  out.revision = correction.revision;
+  out.id = correction.id;
+  out.author = correction.author;
+  out.utime = correction.utime;
+  out.active = active;
+  std::visit(Summarise{out}, correction.what);
+  return out;
+}
+
+bool is_title(std::string_view text) {
+  const auto is_bad = [](char c) { return (c >= 0 && c < 0x20) || c == 0x7F || c == '/' || c == '\\'; };
+  return !text.empty() && text.size() <= 80 && text.front() != ' ' && text.back() != ' ' &&
+         std::none_of(text.begin(), text.end(), is_bad);
+}
+
+}  // namespace concord

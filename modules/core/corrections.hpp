@@ -1,0 +1,218 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "core/lattice.hpp"
+#include "core/shape.hpp"
+#include "core/transform.hpp"
+
+namespace concord {
+
+/// What people do to the map, and what that leads to. Requests are values the bus has already checked (names on the
+/// whitelist, numbers finite, shapes checked, sizes capped); `id` is the asker's, and a request sent twice with one id
+/// is done once. `utime` is when it was asked.
+
+/// Of one edit: a wall of 20 m x 3 m takes 24,000 at 5 cm. More is several edits.
+inline constexpr std::int64_t kMaxEditVoxels = 500'000;
+inline constexpr std::size_t kMaxZones = 1000;
+inline constexpr std::size_t kMaxLeases = 64;
+/// Of a zone or a lease.
+inline constexpr std::size_t kMaxVolumePoints = 64;
+/// For a request that does not heed what others did since.
+inline constexpr std::int64_t kAnyRevision = -1;
+
+/// The frame that a person works in: the map's, or an agent's own (a headset's), which must then be aligned.
+struct WorkFrame {
+  std::string agent;     ///< empty: the map's frame
+  std::string frame_id;  ///< the agent's frame as the asker knows it; empty: the present one
+};
+
+/// Pins voxels of the map, for good. `kMove` takes what is occupied in the shape, pins it free here and occupied there.
+struct EditRequest {
+  enum class Op { kAdd, kDelete, kMove };
+  std::string id;
+  std::string author;
+  Op op = Op::kAdd;
+  Shape shape;
+  WorkFrame frame;
+  Eigen::Vector3d move = Eigen::Vector3d::Zero();  ///< metres in `frame`; rounded to whole voxels of the map
+  std::int64_t base_revision = kAnyRevision;       ///< refused if others changed these voxels since
+  std::int64_t utime = 0;
+};
+
+/// Takes an edit back, or brings it back.
+struct UndoRequest {
+  std::string id;
+  std::string author;
+  std::string edit_id;
+  bool redo = false;
+  std::int64_t utime = 0;
+};
+
+/// A volume that people fenced off, or opened to contact, for planning. Map data, not a rated safety function.
+struct Zone {
+  enum class Kind { kNoGo, kAllowContact };
+  std::string name;  ///< is_title; unique
+  Kind kind = Kind::kNoGo;
+  Volume volume;
+  Transform T_map_zone = Transform::Identity();
+  std::string author;         ///< who last changed it
+  std::int64_t utime = 0;     ///< when
+  std::int64_t revision = 0;  ///< that this led to
+};
+
+struct ZoneRequest {
+  enum class Op { kAdd, kChange, kDelete };
+  std::string id;
+  std::string author;
+  Op op = Op::kAdd;
+  std::string name;
+  Zone::Kind kind = Zone::Kind::kNoGo;  ///< not heeded with kDelete, like the volume
+  Volume volume;
+  WorkFrame frame;
+  std::int64_t base_revision = kAnyRevision;  ///< refused if the zone was changed since
+  std::int64_t utime = 0;
+};
+
+/// A region that somebody works in; others are refused there until it ends.
+struct Lease {
+  std::string id;
+  std::string author;
+  Volume volume;
+  Transform T_map_lease = Transform::Identity();
+  std::int64_t until = 0;  ///< microseconds since 1970
+};
+
+/// Holding again with the same id renews it, and may move it.
+struct LeaseRequest {
+  std::string id;
+  std::string author;
+  bool hold = true;  ///< false: it is freed
+  Volume volume;     ///< not heeded when it is freed
+  WorkFrame frame;
+  std::int64_t utime = 0;
+};
+
+/// Gives an agent another weight than the site file's.
+struct WeightRequest {
+  std::string id;
+  std::string author;
+  std::string agent;
+  int weight = 1;  ///< 1 to 1000
+  std::int64_t utime = 0;
+};
+
+/// A robot was seen at `utime`: its submap is placed so that it was there.
+struct LocaliseRequest {
+  std::string id;
+  std::string author;
+  std::string agent;
+  Transform T_frame_base = Transform::Identity();
+  WorkFrame frame;
+  std::int64_t utime = 0;
+};
+
+/// One thing that a person did, whole: what the store and a saved map keep. Everything that people made is what their
+/// corrections, taken in the order of their revisions, lead to.
+struct Correction {
+  /// An edit as it was evaluated: its voxels in the map's lattice, sorted and unique, none in both.
+  struct Edit {
+    EditRequest::Op op = EditRequest::Op::kAdd;
+    std::vector<VoxelIndex> added;
+    std::vector<VoxelIndex> deleted;
+  };
+  struct Undo {
+    std::string edit_id;
+    bool redo = false;
+  };
+  struct ZoneChange {
+    ZoneRequest::Op op = ZoneRequest::Op::kAdd;
+    Zone zone;  ///< as it is from now on; with kDelete just its name
+  };
+  /// Where an agent lies. It holds for one frame of one incarnation (modules/bus/stream.md): what was removed and comes
+  /// again is not what was placed.
+  struct Placement {
+    std::string agent;
+    std::string frame_id;
+    std::int64_t incarnation = 0;
+    bool has_layer = false;  ///< false: it had sent poses only
+    Transform T_map_agent = Transform::Identity();
+  };
+  struct Weight {
+    std::string agent;
+    int weight = 1;
+  };
+
+  std::int64_t revision = 0;  ///< counts up with each correction, from 1
+  std::string id;             ///< the asker's; an edit's id
+  std::string author;
+  std::int64_t utime = 0;     ///< when merge took it
+  std::uint64_t content = 0;  ///< of the request: tells requests of one id apart
+  std::variant<Edit, Undo, ZoneChange, Placement, Weight> what;
+};
+
+/// A correction in one line, as the history tells it.
+struct Operation {
+  enum class Kind {
+    kAdd,
+    kDelete,
+    kMove,
+    kUndo,
+    kRedo,
+    kZoneAdd,
+    kZoneChange,
+    kZoneDelete,
+    kTransform,
+    kWeight,
+  };
+  std::int64_t revision = 0;
+  std::string id;
+  std::string author;
+  std::int64_t utime = 0;
+  Kind kind = Kind::kAdd;
+  std::string subject;     ///< the edit undone or redone, the zone, the agent; empty for an edit
+  std::int64_t count = 0;  ///< voxels that an edit pins
+  bool active = true;      ///< false for an edit that is undone now
+  VoxelIndex min, max;     ///< of what an edit pins
+};
+
+/// @param active whether it is an edit that is not undone; true for anything else.
+[[nodiscard]] Operation summary(const Correction& correction, bool active);
+
+struct HistoryRequest {
+  std::string id;
+  std::string author;   ///< empty: anyone's
+  std::string subject;  ///< an edit, zone or agent; empty: anything
+  std::optional<Operation::Kind> kind;
+  std::int64_t since = 0;  ///< microseconds since 1970; 0: ever
+  std::int64_t until = 0;  ///< excluded; 0: ever
+  std::int64_t after_revision = 0;
+  int most = 1000;  ///< 1 to 10000; the oldest first
+};
+
+struct ConflictRequest {
+  std::string id;
+  int most = 100;  ///< 1 to 1000 regions, those with the most conflicting voxels first
+};
+
+/// Conflicting voxels within one tile of the map, and what each agent says of them.
+struct ConflictRegion {
+  struct Claim {
+    std::string agent;
+    int occupied = 0;
+    int free = 0;
+  };
+  VoxelIndex min, max;
+  int voxels = 0;
+  std::vector<Claim> claims;  ///< of agents that know any of them, in the order of their ids
+};
+
+/// Titles are for people: 1 to 80 bytes of printable UTF-8 without slashes, not beginning or ending with a space.
+[[nodiscard]] bool is_title(std::string_view text);
+
+}  // namespace concord
