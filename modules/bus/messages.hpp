@@ -9,11 +9,13 @@
 
 #include "bus/bus.hpp"
 #include "bus/counters.hpp"
+#include "core/corrections.hpp"
 #include "core/requests.hpp"
 
 namespace concord {
 
-/// Messages that exist only between processes, as values. Those that people and robots speak are in core/requests.hpp.
+/// Messages that exist only between processes, as values. Those that people and robots speak are in core/requests.hpp
+/// and core/corrections.hpp.
 
 /// See stream.md.
 struct BrickPacket {
@@ -100,6 +102,43 @@ struct ProcessStatus {
   std::map<std::string, std::int64_t> counters;
 };
 
+/// A part of the answer to a HistoryRequest.
+struct HistoryPart {
+  std::string id;  ///< the request's
+  std::int32_t part = 0, parts = 1;
+  std::vector<Operation> operations;  ///< in the order of their revisions
+};
+
+/// A part of the answer to a ConflictRequest.
+struct ConflictList {
+  std::string id;  ///< the request's
+  std::int32_t part = 0, parts = 1;
+  std::int64_t regions_in_all = 0, voxels_in_all = 0;  ///< in the whole map
+  std::vector<ConflictRegion> regions;                 ///< the most voxels first
+};
+
+/// Divides an answer into parts that each fit one frame on the wire, unless one item alone does not. At least one part.
+[[nodiscard]] std::vector<HistoryPart> in_parts(HistoryPart whole);
+[[nodiscard]] std::vector<ConflictList> in_parts(ConflictList whole);
+
+/// A part of a list of zones or leases, see stream.md.
+template <class T>
+struct ListPart {
+  std::uint64_t content = 0;  ///< of the whole list
+  std::int32_t part = 0, parts = 1;
+  std::vector<T> items;
+  Bytes encoded;  ///< the items as they stood in the message: what `content` is the hash of. Only what is read has it
+};
+
+struct ListDigest {
+  std::uint64_t content = 0;
+  std::int32_t parts = 0;  ///< 0: the list is empty
+};
+
+struct ListRequest {
+  std::uint64_t content = 0;
+};
+
 /// Value to wire bytes. `utime` stamps messages whose value has no time of its own.
 [[nodiscard]] Bytes encode(const BrickPacket& value);
 [[nodiscard]] Bytes encode(const BrickDigest& value);
@@ -110,8 +149,20 @@ struct ProcessStatus {
 [[nodiscard]] Bytes encode(const FrameOver& value);
 [[nodiscard]] Bytes encode(const MapPose& value);
 [[nodiscard]] Bytes encode(const TransformRequest& value, std::int64_t utime);
-/// Voxels travel as boxes; `resolution` is the map's.
-[[nodiscard]] Bytes encode(const EditRequest& value, double resolution);
+[[nodiscard]] Bytes encode(const EditRequest& value);
+[[nodiscard]] Bytes encode(const UndoRequest& value);
+[[nodiscard]] Bytes encode(const ZoneRequest& value);
+[[nodiscard]] Bytes encode(const LeaseRequest& value);
+[[nodiscard]] Bytes encode(const WeightRequest& value);
+[[nodiscard]] Bytes encode(const LocaliseRequest& value);
+[[nodiscard]] Bytes encode(const HistoryRequest& value, std::int64_t utime);
+[[nodiscard]] Bytes encode(const HistoryPart& value, std::int64_t utime);
+[[nodiscard]] Bytes encode(const ConflictRequest& value, std::int64_t utime);
+[[nodiscard]] Bytes encode(const ConflictList& value, std::int64_t utime);
+[[nodiscard]] Bytes encode(const ListPart<Zone>& value, std::int64_t utime);
+[[nodiscard]] Bytes encode(const ListPart<Lease>& value, std::int64_t utime);
+[[nodiscard]] Bytes encode(const ListDigest& value, std::int64_t utime);
+[[nodiscard]] Bytes encode(const ListRequest& value, std::int64_t utime);
 [[nodiscard]] Bytes encode(const AgentRequest& value, std::int64_t utime);
 [[nodiscard]] Bytes encode(const DownsampleRequest& value, std::int64_t utime);
 [[nodiscard]] Bytes encode(const Downsampled& value, std::int64_t utime);
@@ -132,7 +183,8 @@ struct BadMessage {
 template <class T>
 using Decoded = tl::expected<T, BadMessage>;
 
-/// Wire bytes to a checked value: everything core/requests.hpp promises holds. Defined for each value type above.
+/// Wire bytes to a checked value: everything core/requests.hpp and core/corrections.hpp promise holds. Defined for each
+/// value type above.
 template <class T>
 [[nodiscard]] Decoded<T> decode(std::span<const std::uint8_t> bytes);
 
@@ -156,6 +208,34 @@ Decoded<MapPose> decode(std::span<const std::uint8_t> bytes);
 template <>
 Decoded<TransformRequest> decode(std::span<const std::uint8_t> bytes);
 template <>
+Decoded<EditRequest> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<UndoRequest> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<ZoneRequest> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<LeaseRequest> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<WeightRequest> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<LocaliseRequest> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<HistoryRequest> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<HistoryPart> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<ConflictRequest> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<ConflictList> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<ListPart<Zone>> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<ListPart<Lease>> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<ListDigest> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<ListRequest> decode(std::span<const std::uint8_t> bytes);
+template <>
 Decoded<AgentRequest> decode(std::span<const std::uint8_t> bytes);
 template <>
 Decoded<DownsampleRequest> decode(std::span<const std::uint8_t> bytes);
@@ -176,9 +256,6 @@ Decoded<AgentList> decode(std::span<const std::uint8_t> bytes);
 template <>
 Decoded<ProcessStatus> decode(std::span<const std::uint8_t> bytes);
 
-/// An edit's indices only mean something at the map's resolution, which the receiver knows.
-[[nodiscard]] Decoded<EditRequest> decode_edit(std::span<const std::uint8_t> bytes, double resolution);
-
 /// Answers a request on `kAnswers`.
 inline const std::string kAnswers = "out/answer";
 void answer(Bus& bus, const Answer& value);
@@ -190,6 +267,10 @@ template <>
 inline constexpr int kQueuedOf<OctomapMessage> = 4;
 template <>
 inline constexpr int kQueuedOf<CloudMessage> = 32;
+template <>
+inline constexpr int kQueuedOf<EditRequest> = 128;  ///< of up to 1.6 MB
+template <class T>
+inline constexpr int kQueuedOf<ListPart<T>> = 2048;  ///< two whole lists
 
 /// Subscribes to a message type: decodes, hands on what is good, counts what is not and refuses it to its asker.
 /// `process` names who refuses.
