@@ -1,0 +1,220 @@
+#include "edit_latency.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <fstream>
+#include <memory>
+#include <random>
+#include <stdexcept>
+
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "agent/submap_publisher.hpp"
+#include "bus/messages.hpp"
+#include "process.hpp"
+#include "station.hpp"
+
+namespace concord::bench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int kRounds = 2000;
+constexpr int kWarmUp = 200;
+constexpr double kResolution = 0.05;
+constexpr int kPatience = 5000;  // milliseconds
+const char* const kPrograms = CONCORD_PROGRAMS;
+
+/// Half-known bricks in a slab as wide as it is long, three bricks high.
+BrickMap made_up_map(std::int64_t voxels) {
+  std::mt19937 random(1);
+  const auto side = static_cast<int>(std::lround(std::sqrt(static_cast<double>(voxels) / (256.0 * 3))));
+  BrickMap map;
+  for (int x = 0; x < side; ++x) {
+    for (int y = 0; y < side; ++y) {
+      for (int z = 0; z < 3; ++z) {
+        DenseBrick dense;
+        for (LogOdds& value : dense) {
+          const std::uint32_t dice = random() & 15;
+          value = dice < 8 ? kUnknown : dice < 14 ? kFree : kOccupied;
+        }
+        map.set({x, y, z}, Brick::from_dense(dense));
+      }
+    }
+  }
+  return map;
+}
+
+/// The stack's folder, gone with this object.
+class Folder {
+ public:
+  explicit Folder(const std::filesystem::path& parent) {
+    std::string name = (parent / "concord-bench-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make a folder in " + parent.string());
+    path_ = name;
+    std::ofstream(path_ / "site.yaml") << "lcm_url: " << test::kUrl
+                                       << "\nbeyond_host: true\nstate: state\nresolution: " << kResolution << "\n";
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Sends back whatever it hears, by LCM alone: the bare round trip.
+class Echo {
+ public:
+  explicit Echo(const test::Host& host) {
+    host.inside([this] {
+      id_ = fork();
+      if (id_ == 0) serve();
+    });
+    if (id_ < 0) throw std::runtime_error("cannot fork");
+  }
+  ~Echo() {
+    kill(id_, SIGKILL);
+    waitpid(id_, nullptr, 0);
+  }
+  Echo(const Echo&) = delete;
+  Echo& operator=(const Echo&) = delete;
+
+ private:
+  [[noreturn]] static void serve() {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    lcm::LCM lcm(test::kUrl);
+    const auto answer = [](const lcm::ReceiveBuffer* buffer, const std::string&, lcm::LCM* to) {
+      to->publish("bench/pong", buffer->data, buffer->data_size);
+    };
+    lcm.subscribeFunction<lcm::LCM*>("bench/ping", answer, &lcm);
+    while (lcm.handle() == 0) {
+    }
+    _exit(1);
+  }
+  pid_t id_ = -1;
+};
+
+/// A person's end of both, on one LCM socket.
+class Person {
+ public:
+  explicit Person(const test::Host& host) {
+    host.inside([this] { lcm_ = std::make_unique<lcm::LCM>(test::kUrl); });
+    lcm_->subscribeFunction<int*>(
+        "bench/pong", [](const lcm::ReceiveBuffer*, const std::string&, int* count) { ++*count; }, &pongs_);
+    lcm_->subscribeFunction<Person*>(
+        "out/map/bricks",
+        [](const lcm::ReceiveBuffer* buffer, const std::string&, Person* self) {
+          const auto packet = decode<BrickPacket>({static_cast<const std::uint8_t*>(buffer->data), buffer->data_size});
+          if (packet) self->version_ = std::max(self->version_, packet->last_version);
+        },
+        this);
+  }
+
+  /// Microseconds.
+  double ping(const Bytes& bytes) {
+    const int before = pongs_;
+    return timed("bench/ping", bytes, [&] { return pongs_ > before; });
+  }
+  double edit(const EditRequest& request) {
+    const std::int64_t before = version_;
+    return timed("in/edit", encode(request), [&] { return version_ > before; });
+  }
+
+ private:
+  template <class Happened>
+  double timed(const char* channel, const Bytes& bytes, Happened happened) {
+    const auto start = Clock::now();
+    lcm_->publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
+    while (!happened()) {
+      if (lcm_->handleTimeout(kPatience) <= 0) throw std::runtime_error(std::string("no answer on ") + channel);
+    }
+    return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+  }
+
+  std::unique_ptr<lcm::LCM> lcm_;
+  int pongs_ = 0;
+  std::int64_t version_ = 0;
+};
+
+/// Until the whole submap is the map.
+void bring_up(const test::Host& host, const BrickMap& map, test::Station& robot, SubmapPublisher& publisher) {
+  bool placed = false;
+  host.inside([&] {
+    listen<Answer>(robot.bus(), robot.counters(), "bench", kAnswers,
+                   [&placed](const std::string&, const Answer& answer) { placed = placed || answer.ok; });
+  });
+  test::StreamCopy copy(host, "out/map", kResolution);
+  publisher.begin_frame("frame1");
+  publisher.publish(map);
+  std::int64_t ask_at = 0;
+  const auto done = [&] {
+    if (!placed && robot.bus().now() >= ask_at) {
+      ask_at = robot.bus().now() + 300'000;
+      const TransformRequest request{"place", "bench", "robot1", "frame1", Transform::Identity()};
+      robot.bus().publish("in/transform", encode(request, robot.bus().now()));
+    }
+    return copy.synced() && copy.map().brick_count() == map.brick_count();
+  };
+  if (!test::eventually({&robot.bus(), &copy.bus()}, done)) throw std::runtime_error("the map did not come up");
+}
+
+EditRequest one_voxel(int number, VoxelIndex voxel) {
+  EditRequest request;
+  request.id = "bench-" + std::to_string(number);
+  request.author = "bench";
+  request.shape = VoxelList{kResolution, {{voxel, voxel}}};
+  return request;
+}
+
+}  // namespace
+
+Latency latency_of(std::vector<double> samples) {
+  std::ranges::sort(samples);
+  return {samples[samples.size() / 2], samples[samples.size() * 99 / 100]};
+}
+
+EditLatency measure_edits(std::int64_t voxels, const std::filesystem::path& state) {
+  const Folder folder(state);
+  test::Network network;
+  const test::Host& host = network.add("bench");
+  const std::string site = folder.path() / "site.yaml";
+  const auto start = [&](const std::string& name) {
+    return test::Process(host, {std::string(kPrograms) + "/concord-" + name, "--site", site}, folder.path() / "log");
+  };
+  const test::Process ingest = start("ingest");
+  const test::Process merge = start("merge");
+  const Echo echo(host);
+  test::Station robot(host);
+  const BrickMap map = made_up_map(voxels);
+  std::unique_ptr<SubmapPublisher> publisher;
+  host.inside([&] {
+    publisher = std::make_unique<SubmapPublisher>(
+        robot.bus(), robot.counters(), SubmapPublisher::Config{"robot1", kResolution, 5e6, robot.bus().now()}, [] {});
+  });
+  bring_up(host, map, robot, *publisher);
+
+  Person person(host);
+  std::mt19937 random(2);
+  const std::vector<BrickIndex> bricks = map.sorted_bricks();
+  std::vector<double> round_trips, edits;
+  for (int i = 0; i < kWarmUp + kRounds; ++i) {
+    const BrickIndex brick = bricks[random() % bricks.size()];
+    const EditRequest request = one_voxel(i, voxel_at(brick, static_cast<int>(random() % kBrickVoxels)));
+    const double ping = person.ping(encode(request));
+    const double edit = person.edit(request);
+    if (i >= kWarmUp) {
+      round_trips.push_back(ping);
+      edits.push_back(edit);
+    }
+    robot.bus().spin_once(0);
+  }
+  return {static_cast<std::int64_t>(map.known_count()), latency_of(round_trips), latency_of(edits)};
+}
+
+}  // namespace concord::bench
