@@ -19,8 +19,10 @@ namespace concord {
 
 /// Caps of any file. What is beyond them is neither written nor read.
 inline constexpr std::size_t kMaxArchiveBytes = 1'000'000'000;
-inline constexpr std::size_t kMaxArchiveLayers = 10'000;
-inline constexpr std::uint64_t kMaxArchiveBricks = 8'000'000;  ///< of all layers
+inline constexpr std::size_t kMaxArchiveLayers = 1000;
+inline constexpr std::uint64_t kMaxArchiveBricks = 8'000'000;      ///< of all layers
+inline constexpr std::uint64_t kMaxArchiveVoxels = 1'000'000'000;  ///< known, of all layers
+inline constexpr std::uint64_t kMaxArchiveCorrections = 2'000'000;
 inline constexpr std::uint64_t kMaxArchivePins = 100'000'000;  ///< voxels pinned by all edits, undone ones included
 
 /// Whose layer it was.
@@ -78,8 +80,7 @@ struct MapArchiveOptions {
 /// version, or saying what nobody could have saved (kMalformed); another resolution (kBadResolution); over a cap
 /// (kTooLarge), found out before memory is taken. Sections that are unknown are passed over.
 ///
-/// Corrections: revisions ascend from 1, ids are unique, voxels in bounds; an undo undoes an edit before it that stood,
-/// a redo one that did not; a zone is added once, changed and deleted while it is there, kMaxZones at a time.
+/// Corrections are what CorrectionCheck (core/correction_check.hpp) takes.
 [[nodiscard]] Result<MapArchive> read_map_archive(ByteSpan file, const MapArchiveOptions& options = {});
 
 /// Incarnations of agents that were loaded are this or greater; those that are counted by time are less.

@@ -1,0 +1,162 @@
+#include "core/correction_check.hpp"
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include "core/requests.hpp"
+
+namespace concord {
+namespace {
+
+constexpr std::size_t kLongestText = 80;  // bytes of an id or an author
+constexpr double kRotationError = 1e-6;
+constexpr double kFarthestPlacement = 10'000.0;  // metres, as make_transform takes
+
+bool is_printable(std::string_view text) {
+  return text.size() <= kLongestText &&
+         std::none_of(text.begin(), text.end(), [](char c) { return (c >= 0 && c < 0x20) || c == 0x7F; });
+}
+
+Result<void> check_transform(const Transform& T) {
+  const Eigen::Matrix3d R = T.linear();
+  if (!R.allFinite() || !T.translation().allFinite()) {
+    return refuse(Code::kNotFinite, "transform has a component that is not finite");
+  }
+  const double error = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (!(error < kRotationError) || R.determinant() < 0) {
+    return refuse(Code::kBadTransform, "transform is no rotation and translation");
+  }
+  if (T.translation().cwiseAbs().maxCoeff() > kFarthestPlacement) {
+    return refuse(Code::kBadTransform, "translation is over 10 km; is it in metres?");
+  }
+  return {};
+}
+
+Result<void> check_agent(const std::string& agent) {
+  if (is_name(agent)) return {};
+  return refuse(Code::kBadName, "an agent's id is 1 to 40 of A-Z a-z 0-9 . _ -");
+}
+
+Result<void> check_voxels(const std::vector<VoxelIndex>& voxels) {
+  if (voxels.size() > static_cast<std::size_t>(kMaxEditVoxels)) {
+    return refuse(Code::kTooLarge, "an edit of over " + std::to_string(kMaxEditVoxels) + " voxels");
+  }
+  for (std::size_t i = 0; i < voxels.size(); ++i) {
+    if (!in_bounds(voxels[i])) return refuse(Code::kOutOfBounds, "a voxel of the edit is out of bounds");
+    if (i > 0 && !(voxels[i - 1] < voxels[i])) {
+      return refuse(Code::kBadRequest, "the voxels of the edit are not sorted and unique");
+    }
+  }
+  return {};
+}
+
+/// @pre both sorted.
+bool share_any(const std::vector<VoxelIndex>& a, const std::vector<VoxelIndex>& b) {
+  auto i = a.begin();
+  auto j = b.begin();
+  while (i != a.end() && j != b.end()) {
+    if (*i == *j) return true;
+    if (*i < *j) {
+      ++i;
+    } else {
+      ++j;
+    }
+  }
+  return false;
+}
+
+/// Which of its lists an edit fills: a move whose voxels all land on one another deletes none.
+bool fits_op(const Correction::Edit& edit) {
+  switch (edit.op) {
+    case EditRequest::Op::kAdd: return edit.deleted.empty();
+    case EditRequest::Op::kDelete: return edit.added.empty();
+    case EditRequest::Op::kMove: return !edit.added.empty();
+  }
+  return false;
+}
+
+Result<void> check_volume(const Volume& volume) {
+  const auto* prism = std::get_if<Prism>(&volume);
+  if (prism != nullptr && prism->points.size() > kMaxVolumePoints) {
+    return refuse(Code::kTooLarge, "a zone has over " + std::to_string(kMaxVolumePoints) + " corners");
+  }
+  return check(volume);
+}
+
+}  // namespace
+
+/// What a correction does, asked against all before it and noted.
+struct CorrectionCheck::Follow {
+  CorrectionCheck& list;
+  const std::string& id;
+
+  Result<void> operator()(const Correction::Edit& edit) const {
+    if (edit.added.empty() && edit.deleted.empty()) return refuse(Code::kEmpty, "the edit pins no voxel");
+    for (const auto* voxels : {&edit.added, &edit.deleted}) {
+      if (auto fine = check_voxels(*voxels); !fine) return fine;
+    }
+    if (!fits_op(edit) || share_any(edit.added, edit.deleted)) {
+      return refuse(Code::kBadRequest, "the edit's voxels are not what its op leads to");
+    }
+    list.edits_.emplace(id, true);
+    return {};
+  }
+
+  Result<void> operator()(const Correction::Undo& undo) const {
+    const auto edit = list.edits_.find(undo.edit_id);
+    if (edit == list.edits_.end()) return refuse(Code::kNotFound, "no edit before this is called " + undo.edit_id);
+    if (edit->second == undo.redo) {
+      return refuse(Code::kConflict, "edit " + undo.edit_id + (undo.redo ? " was not undone" : " is undone already"));
+    }
+    edit->second = undo.redo;
+    return {};
+  }
+
+  Result<void> operator()(const Correction::ZoneChange& change) const {
+    const Zone& zone = change.zone;
+    if (!is_title(zone.name)) return refuse(Code::kBadName, "a zone's name is 1 to 80 printable bytes without slashes");
+    const bool is_there = list.zones_.contains(zone.name);
+    const bool adds = change.op == ZoneRequest::Op::kAdd;
+    if (adds && is_there) return refuse(Code::kExists, "there is a zone called " + zone.name);
+    if (!adds && !is_there) return refuse(Code::kNotFound, "no zone is called " + zone.name);
+    if (change.op == ZoneRequest::Op::kDelete) {
+      list.zones_.erase(zone.name);
+      return {};
+    }
+    if (adds && list.zones_.size() >= kMaxZones) {
+      return refuse(Code::kTooLarge, "over " + std::to_string(kMaxZones) + " zones");
+    }
+    if (auto fine = check_volume(zone.volume); !fine) return fine;
+    if (auto fine = check_transform(zone.T_map_zone); !fine) return fine;
+    list.zones_.insert(zone.name);
+    return {};
+  }
+
+  Result<void> operator()(const Correction::Placement& placement) const {
+    if (auto fine = check_agent(placement.agent); !fine) return fine;
+    if (!is_name(placement.frame_id)) return refuse(Code::kBadName, "frame_id must be 1 to 40 of A-Z a-z 0-9 . _ -");
+    return check_transform(placement.T_map_agent);
+  }
+
+  Result<void> operator()(const Correction::Weight& weight) const {
+    if (auto fine = check_agent(weight.agent); !fine) return fine;
+    if (weight.weight < 1 || weight.weight > 1000) return refuse(Code::kBadRequest, "weight must be 1 to 1000");
+    return {};
+  }
+};
+
+Result<void> CorrectionCheck::take(const Correction& correction) {
+  const auto& [revision, id, author, utime, content, what] = correction;
+  if (revision <= revision_) return refuse(Code::kStale, "revisions must ascend, from 1");
+  if (id.empty() || !is_printable(id)) return refuse(Code::kBadName, "an id must be 1 to 80 printable characters");
+  if (!is_printable(author)) return refuse(Code::kBadName, "author must be at most 80 printable characters");
+  if (utime < 0) return refuse(Code::kBadRequest, "a time before 1970");
+  if (ids_.contains(id)) return refuse(Code::kExists, "another correction has the id " + id);
+  if (auto fine = std::visit(Follow{*this, id}, what); !fine) return fine;
+  revision_ = revision;
+  ids_.insert(id);
+  return {};
+}
+
+}  // namespace concord

@@ -1,0 +1,285 @@
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string>
+#include <utility>
+
+#include "core/map_archive_parts.hpp"
+#include "core/voxel_boxes.hpp"
+
+namespace concord::archive {
+namespace {
+
+// Numbered here and not by the enums: what was written once stays readable.
+enum class What : std::uint8_t { kEdit = 1, kUndo, kZone, kPlacement, kWeight };
+enum class Form : std::uint8_t { kBox = 1, kOrientedBox, kPrism };
+
+constexpr std::array kEditOps{EditRequest::Op::kAdd, EditRequest::Op::kDelete, EditRequest::Op::kMove};
+constexpr std::array kZoneOps{ZoneRequest::Op::kAdd, ZoneRequest::Op::kChange, ZoneRequest::Op::kDelete};
+constexpr std::array kZoneKinds{Zone::Kind::kNoGo, Zone::Kind::kAllowContact};
+
+static_assert(kMaxVoxel == 1 << 15, "voxels are written in 16 bits");
+constexpr std::size_t kBoxBytes = 6 * 2;
+
+/// An enum as its place in a list, from 1.
+template <class Enum, std::size_t size>
+void append_one_of(Bytes& out, const std::array<Enum, size>& all, Enum value) {
+  append_le(out, static_cast<std::uint8_t>(1 + (std::find(all.begin(), all.end(), value) - all.begin())));
+}
+
+template <class Enum, std::size_t size>
+Enum read_one_of(FieldReader& in, const std::array<Enum, size>& all) {
+  const auto place = in.integer<std::uint8_t>();
+  if (place >= 1 && place <= size) return all[place - 1];
+  in.fail();
+  return all[0];
+}
+
+template <int size>
+void append_vector(Bytes& out, const Eigen::Matrix<double, size, 1>& p) {
+  for (int i = 0; i < size; ++i) append_real(out, p[i]);
+}
+
+template <int size>
+Eigen::Matrix<double, size, 1> read_vector(FieldReader& in) {
+  Eigen::Matrix<double, size, 1> p;
+  for (int i = 0; i < size; ++i) p[i] = in.real();
+  return p;
+}
+
+/// To the bit: a quaternion would give a map that differs in voxels at an edge.
+void append_transform(Bytes& out, const Transform& T) {
+  for (int row = 0; row < 3; ++row) append_vector<3>(out, T.linear().row(row).transpose());
+  append_vector<3>(out, T.translation());
+}
+
+Transform read_transform(FieldReader& in) {
+  Transform T = Transform::Identity();
+  for (int row = 0; row < 3; ++row) T.linear().row(row) = read_vector<3>(in).transpose();
+  T.translation() = read_vector<3>(in);
+  return T;
+}
+
+void append_voxels(Bytes& out, const std::vector<VoxelIndex>& voxels) {
+  const std::vector<VoxelBox> boxes = to_boxes(voxels);
+  append_le(out, static_cast<std::uint32_t>(boxes.size()));
+  for (const VoxelBox& box : boxes) {
+    for (const VoxelIndex v : {box.min, box.max}) {
+      for (const std::int32_t c : {v.x, v.y, v.z}) append_le(out, static_cast<std::int16_t>(c));
+    }
+  }
+}
+
+VoxelIndex read_voxel(FieldReader& in) {
+  VoxelIndex v;
+  v.x = in.integer<std::int16_t>();
+  v.y = in.integer<std::int16_t>();
+  v.z = in.integer<std::int16_t>();
+  return v;
+}
+
+/// Refused: boxes that to_boxes does not make (kMalformed), too many voxels (kTooLarge).
+Result<std::vector<VoxelIndex>> read_voxels(FieldReader& in, std::uint64_t most) {
+  const auto count = in.integer<std::uint32_t>();
+  if (!in.ok() || count > in.rest().size() / kBoxBytes) return malformed("an edit is cut short; save it again");
+  if (count == 0) return std::vector<VoxelIndex>();
+  std::vector<VoxelBox> boxes(count);
+  for (VoxelBox& box : boxes) {
+    box.min = read_voxel(in);
+    box.max = read_voxel(in);
+  }
+  auto voxels = expand(boxes, static_cast<std::int64_t>(most));
+  if (!voxels && voxels.error().code == Code::kTooLarge) {
+    return refuse(Code::kTooLarge, "map file: its edits pin more voxels than can be");
+  }
+  if (!voxels || to_boxes(*voxels) != boxes) return malformed("an edit's voxels are none; save it again");
+  return voxels;
+}
+
+void append_form(Bytes& out, Form form) { append_le(out, static_cast<std::uint8_t>(form)); }
+
+struct AppendVolume {
+  Bytes& out;
+
+  void operator()(const Box& box) const {
+    append_form(out, Form::kBox);
+    append_vector<3>(out, box.min);
+    append_vector<3>(out, box.max);
+  }
+  void operator()(const OrientedBox& box) const {
+    append_form(out, Form::kOrientedBox);
+    append_transform(out, box.T_frame_box);
+    append_vector<3>(out, box.size);
+  }
+  void operator()(const Prism& prism) const {
+    append_form(out, Form::kPrism);
+    append_le(out, static_cast<std::uint8_t>(prism.points.size()));
+    for (const Eigen::Vector2d& p : prism.points) append_vector<2>(out, p);
+    append_real(out, prism.low);
+    append_real(out, prism.high);
+  }
+};
+static_assert(kMaxVolumePoints < 256);
+
+Volume read_volume(FieldReader& in) {
+  switch (static_cast<Form>(in.integer<std::uint8_t>())) {
+    case Form::kBox: {
+      Box box;
+      box.min = read_vector<3>(in);
+      box.max = read_vector<3>(in);
+      return box;
+    }
+    case Form::kOrientedBox: {
+      OrientedBox box;
+      box.T_frame_box = read_transform(in);
+      box.size = read_vector<3>(in);
+      return box;
+    }
+    case Form::kPrism: {
+      Prism prism;
+      prism.points.resize(in.integer<std::uint8_t>());
+      for (Eigen::Vector2d& p : prism.points) p = read_vector<2>(in);
+      prism.low = in.real();
+      prism.high = in.real();
+      return prism;
+    }
+  }
+  in.fail();
+  return Box{};
+}
+
+void append_what(Bytes& out, What what) { append_le(out, static_cast<std::uint8_t>(what)); }
+
+struct AppendWhat {
+  Bytes& out;
+
+  void operator()(const Correction::Edit& edit) const {
+    append_what(out, What::kEdit);
+    append_one_of(out, kEditOps, edit.op);
+    append_voxels(out, edit.added);
+    append_voxels(out, edit.deleted);
+  }
+  void operator()(const Correction::Undo& undo) const {
+    append_what(out, What::kUndo);
+    append_text(out, undo.edit_id);
+    append_le(out, static_cast<std::uint8_t>(undo.redo));
+  }
+  void operator()(const Correction::ZoneChange& change) const {
+    append_what(out, What::kZone);
+    append_one_of(out, kZoneOps, change.op);
+    append_text(out, change.zone.name);
+    if (change.op == ZoneRequest::Op::kDelete) return;
+    append_one_of(out, kZoneKinds, change.zone.kind);
+    std::visit(AppendVolume{out}, change.zone.volume);
+    append_transform(out, change.zone.T_map_zone);
+  }
+  void operator()(const Correction::Placement& placement) const {
+    append_what(out, What::kPlacement);
+    append_text(out, placement.agent);
+    append_text(out, placement.frame_id);
+    append_le(out, placement.incarnation);
+    append_le(out, static_cast<std::uint8_t>(placement.has_layer));
+    append_transform(out, placement.T_map_agent);
+  }
+  void operator()(const Correction::Weight& weight) const {
+    append_what(out, What::kWeight);
+    append_text(out, weight.agent);
+    append_le(out, static_cast<std::uint16_t>(weight.weight));
+  }
+};
+
+Result<Correction::Edit> read_edit(FieldReader& in, const Room& room) {
+  const std::uint64_t most = std::min<std::uint64_t>(kMaxEditVoxels, room.pins);
+  Correction::Edit edit;
+  edit.op = read_one_of(in, kEditOps);
+  for (auto* voxels : {&edit.added, &edit.deleted}) {
+    auto read = read_voxels(in, most);
+    if (!read) return tl::unexpected(read.error());
+    *voxels = std::move(*read);
+  }
+  return edit;
+}
+
+Correction::Undo read_undo(FieldReader& in) {
+  Correction::Undo undo;
+  undo.edit_id = in.text();
+  undo.redo = in.flag();
+  return undo;
+}
+
+/// But for its author, time and revision.
+Correction::ZoneChange read_zone_change(FieldReader& in) {
+  Correction::ZoneChange change;
+  change.op = read_one_of(in, kZoneOps);
+  change.zone.name = in.text();
+  if (change.op == ZoneRequest::Op::kDelete) return change;
+  change.zone.kind = read_one_of(in, kZoneKinds);
+  change.zone.volume = read_volume(in);
+  change.zone.T_map_zone = read_transform(in);
+  return change;
+}
+
+Correction::Placement read_placement(FieldReader& in) {
+  Correction::Placement placement;
+  placement.agent = in.text();
+  placement.frame_id = in.text();
+  placement.incarnation = in.integer<std::int64_t>();
+  placement.has_layer = in.flag();
+  placement.T_map_agent = read_transform(in);
+  return placement;
+}
+
+Correction::Weight read_weight(FieldReader& in) {
+  Correction::Weight weight;
+  weight.agent = in.text();
+  weight.weight = in.integer<std::uint16_t>();
+  return weight;
+}
+
+Result<decltype(Correction::what)> read_what(FieldReader& in, const Room& room) {
+  switch (static_cast<What>(in.integer<std::uint8_t>())) {
+    case What::kEdit: {
+      auto edit = read_edit(in, room);
+      if (!edit) return tl::unexpected(edit.error());
+      return std::move(*edit);
+    }
+    case What::kUndo: return read_undo(in);
+    case What::kZone: return read_zone_change(in);
+    case What::kPlacement: return read_placement(in);
+    case What::kWeight: return read_weight(in);
+  }
+  in.fail();
+  return Correction::Undo{};
+}
+
+}  // namespace
+
+void append_correction(Bytes& out, const Correction& correction) {
+  append_le(out, correction.revision);
+  append_text(out, correction.id);
+  append_text(out, correction.author);
+  append_le(out, correction.utime);
+  append_le(out, correction.content);
+  std::visit(AppendWhat{out}, correction.what);
+}
+
+Result<Correction> read_correction(FieldReader& in, Room& room) {
+  const auto revision = in.integer<std::int64_t>();
+  std::string id = in.text();
+  std::string author = in.text();
+  const auto utime = in.integer<std::int64_t>();
+  const auto content = in.integer<std::uint64_t>();
+  auto what = read_what(in, room);
+  if (!what) return tl::unexpected(what.error());
+  if (!in.ok()) return malformed("a correction is cut short or of an unknown kind; save it again");
+  if (auto* change = std::get_if<Correction::ZoneChange>(&*what)) {
+    change->zone.author = author;
+    change->zone.utime = utime;
+    change->zone.revision = revision;
+  }
+  Correction correction{revision, std::move(id), std::move(author), utime, content, std::move(*what)};
+  if (auto fits = room.take_correction(correction); !fits) return tl::unexpected(fits.error());
+  return correction;
+}
+
+}  // namespace concord::archive
