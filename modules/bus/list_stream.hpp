@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,7 +43,8 @@ class ListSender {
   void set(const std::vector<T>& items);
 
  private:
-  void divide(const std::vector<T>& items);
+  using Part = std::vector<T>;
+
   void on_request(const ListRequest& request);
   void send_now();
   double send_one();
@@ -56,7 +58,7 @@ class ListSender {
 
   bool begun_ = false;
   std::uint64_t content_ = 0;
-  std::vector<std::vector<T>> parts_;
+  std::vector<Part> parts_;
   std::size_t next_part_ = 0;    ///< of the pass that is being sent
   std::int64_t repeat_due_ = 0;  ///< a pass was asked for; 0: none
   std::int64_t next_digest_ = 0;
@@ -75,16 +77,17 @@ class ListReceiver {
   ListReceiver& operator=(const ListReceiver&) = delete;
 
   /// The list is what the last digest announced; false until one did.
-  [[nodiscard]] bool synced() const { return digest_heard_ && held_ && held_content_ == wanted_.content; }
+  [[nodiscard]] bool synced() const { return wanted_ && held_content_ == wanted_->content; }
   /// As it was last handed on; empty before the first.
   [[nodiscard]] const std::vector<T>& items() const { return items_; }
 
  private:
   void on_part(ListPart<T> part);
   void on_digest(const ListDigest& digest);
-  void want(const ListDigest& digest);
+  void begin_anew();
   void take_if_whole();
   void ask_if_quiet();
+  [[nodiscard]] std::int64_t back_off();
 
   Bus& bus_;
   Counters& counters_;
@@ -92,12 +95,10 @@ class ListReceiver {
   OnChange on_change_;
   std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  ///< timers and subscriptions of the bus outlive this
 
-  bool held_ = false;
-  std::uint64_t held_content_ = 0;
+  std::optional<std::uint64_t> held_content_;
   std::vector<T> items_;
 
-  bool digest_heard_ = false;
-  ListDigest wanted_;
+  std::optional<ListDigest> wanted_;             ///< the last
   std::map<std::int32_t, ListPart<T>> arrived_;  ///< parts of the list that is wanted
   std::size_t items_arrived_ = 0;
   std::int64_t ask_at_ = 0;

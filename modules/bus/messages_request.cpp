@@ -1,31 +1,19 @@
-// Translators of what people, robots and programs ask for.
+// Translators of what people, robots and programs ask for, beside corrections (messages_correction.cpp).
 
 #include <concord/agent_pose_t.hpp>
 #include <concord/agent_request_t.hpp>
 #include <concord/downsample_request_t.hpp>
-#include <concord/edit_t.hpp>
 #include <concord/map_request_t.hpp>
 #include <concord/path_request_t.hpp>
-#include <concord/set_transform_t.hpp>
 
 #include "bus/translate.hpp"
-#include "core/voxel_boxes.hpp"
 
 namespace concord {
 namespace {
 
 using wire::bad;
-
-constexpr std::int64_t kMaxEditBoxes = 65'536;
-constexpr std::int64_t kMaxEditVoxels = 1'000'000;
-
-BadMessage bad_id() { return {{Code::kBadRequest, "request id must be 1 to 80 printable characters"}, {}}; }
-BadMessage bad_author(const std::string& id) {
-  return {{Code::kBadRequest, "author must be at most 80 printable characters"}, id};
-}
-BadMessage bad_agent(const std::string& id) {
-  return {{Code::kBadName, "agent must be 1 to 40 of A-Z a-z 0-9 . _ -, starting with a letter or digit"}, id};
-}
+using wire::bad_agent;
+using wire::bad_id;
 
 }  // namespace
 
@@ -48,88 +36,6 @@ Decoded<AgentPose> decode<AgentPose>(std::span<const std::uint8_t> bytes) {
   return AgentPose{{}, in->frame_id, *T, in->utime};
 }
 
-Bytes encode(const TransformRequest& value, std::int64_t utime) {
-  set_transform_t out;
-  out.utime = utime;
-  out.request_id = value.id;
-  out.author = value.author;
-  out.agent = value.agent;
-  out.frame_id = value.frame_id;
-  out.T_map_agent = wire::to_wire(value.T_map_agent);
-  return wire::to_bytes(out);
-}
-
-template <>
-Decoded<TransformRequest> decode<TransformRequest>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {fixed(8),
-                                          text(wire::kIdLength),
-                                          text(wire::kIdLength),
-                                          text(wire::kNameLength),
-                                          text(wire::kNameLength),
-                                          fixed(wire::kTransformBytes)};
-  const auto in = wire::from_bytes<set_transform_t>(bytes, kLayout);
-  if (!in) return bad(in.error());
-  if (!wire::is_request_id(in->request_id)) return tl::unexpected(bad_id());
-  if (!wire::is_printable(in->author)) return tl::unexpected(bad_author(in->request_id));
-  if (!is_name(in->agent)) return tl::unexpected(bad_agent(in->request_id));
-  if (!in->frame_id.empty() && !is_name(in->frame_id)) {
-    return bad(Code::kBadFrame, "frame_id must be empty or a name", in->request_id);
-  }
-  const auto T = wire::from_wire(in->T_map_agent);
-  if (!T) return bad(T.error(), in->request_id);
-  return TransformRequest{in->request_id, in->author, in->agent, in->frame_id, *T};
-}
-
-Bytes encode(const EditRequest& value, double resolution) {
-  edit_t out;
-  out.utime = value.utime;
-  out.edit_id = value.id;
-  out.author = value.author;
-  out.op = value.op == EditRequest::Op::kAdd ? edit_t::ADD : edit_t::DELETE;
-  out.resolution = resolution;
-  for (const VoxelBox& box : to_boxes(value.voxels)) {
-    out.min_x.push_back(box.min.x);
-    out.min_y.push_back(box.min.y);
-    out.min_z.push_back(box.min.z);
-    out.max_x.push_back(box.max.x);
-    out.max_y.push_back(box.max.y);
-    out.max_z.push_back(box.max.z);
-  }
-  out.count = static_cast<std::int32_t>(out.min_x.size());
-  return wire::to_bytes(out);
-}
-
-Decoded<EditRequest> decode_edit(std::span<const std::uint8_t> bytes, double resolution) {
-  static constexpr WireField kLayout[] = {fixed(8),
-                                          text(wire::kIdLength),
-                                          text(wire::kIdLength),
-                                          fixed(1 + 8),
-                                          count(kMaxEditBoxes),
-                                          array(4),
-                                          array(4),
-                                          array(4),
-                                          array(4),
-                                          array(4),
-                                          array(4)};
-  const auto in = wire::from_bytes<edit_t>(bytes, kLayout);
-  if (!in) return bad(in.error());
-  if (!wire::is_request_id(in->edit_id)) return tl::unexpected(bad_id());
-  if (!wire::is_printable(in->author)) return tl::unexpected(bad_author(in->edit_id));
-  if (in->op != edit_t::ADD && in->op != edit_t::DELETE)
-    return bad(Code::kBadRequest, "op must be ADD or DELETE", in->edit_id);
-  if (!(std::abs(in->resolution - resolution) < 1e-9)) {
-    return bad(Code::kBadResolution, "the map's resolution is " + std::to_string(resolution) + " m", in->edit_id);
-  }
-  std::vector<VoxelBox> boxes;
-  for (std::size_t i = 0; i < in->min_x.size(); ++i) {
-    boxes.push_back({{in->min_x[i], in->min_y[i], in->min_z[i]}, {in->max_x[i], in->max_y[i], in->max_z[i]}});
-  }
-  auto voxels = expand(boxes, kMaxEditVoxels);
-  if (!voxels) return bad(voxels.error(), in->edit_id);
-  const auto op = in->op == edit_t::ADD ? EditRequest::Op::kAdd : EditRequest::Op::kDelete;
-  return EditRequest{in->edit_id, in->author, op, std::move(*voxels), in->utime};
-}
-
 Bytes encode(const AgentRequest& value, std::int64_t utime) {
   agent_request_t out;
   out.utime = utime;
@@ -144,8 +50,8 @@ Decoded<AgentRequest> decode<AgentRequest>(std::span<const std::uint8_t> bytes) 
   static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength), text(wire::kNameLength), fixed(1)};
   const auto in = wire::from_bytes<agent_request_t>(bytes, kLayout);
   if (!in) return bad(in.error());
-  if (!wire::is_request_id(in->request_id)) return tl::unexpected(bad_id());
-  if (!is_name(in->agent)) return tl::unexpected(bad_agent(in->request_id));
+  if (!wire::is_request_id(in->request_id)) return bad_id();
+  if (!is_name(in->agent)) return bad_agent(in->request_id);
   switch (in->op) {
     case agent_request_t::RESET: return AgentRequest{in->request_id, in->agent, AgentRequest::Op::kReset};
     case agent_request_t::REMOVE: return AgentRequest{in->request_id, in->agent, AgentRequest::Op::kRemove};
@@ -167,8 +73,8 @@ Decoded<DownsampleRequest> decode<DownsampleRequest>(std::span<const std::uint8_
   static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength), text(wire::kNameLength), fixed(8)};
   const auto in = wire::from_bytes<downsample_request_t>(bytes, kLayout);
   if (!in) return bad(in.error());
-  if (!wire::is_request_id(in->request_id)) return tl::unexpected(bad_id());
-  if (!is_name(in->agent)) return tl::unexpected(bad_agent(in->request_id));
+  if (!wire::is_request_id(in->request_id)) return bad_id();
+  if (!is_name(in->agent)) return bad_agent(in->request_id);
   if (!(in->resolution > 0 && in->resolution <= 100)) {
     return bad(Code::kBadResolution, "resolution must lie between 0 and 100 m", in->request_id);
   }
@@ -193,11 +99,11 @@ Bytes encode(const MapRequest& value, std::int64_t utime) {
 
 template <>
 Decoded<MapRequest> decode<MapRequest>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength),  fixed(1), text(wire::kNameLength), text(2),
+  static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength),  fixed(1), text(wire::kNameLength), text(7),
                                           fixed(1), text(wire::kNameLength)};
   const auto in = wire::from_bytes<map_request_t>(bytes, kLayout);
   if (!in) return bad(in.error());
-  if (!wire::is_request_id(in->request_id)) return tl::unexpected(bad_id());
+  if (!wire::is_request_id(in->request_id)) return bad_id();
   MapRequest out{in->request_id, MapRequest::Op::kList, in->map, in->format, in->overwrite != 0, in->agent};
   switch (in->op) {
     case map_request_t::LIST: return out;
@@ -209,9 +115,10 @@ Decoded<MapRequest> decode<MapRequest>(std::span<const std::uint8_t> bytes) {
     return bad(Code::kBadName, "a map's name is 1 to 40 of A-Z a-z 0-9 . _ -, starting with a letter or digit", out.id);
   }
   const bool any_format = out.format.empty() && out.op == MapRequest::Op::kLoad;
-  if (!any_format && out.format != "bt" && out.format != "ot")
-    return bad(Code::kBadRequest, "format must be bt or ot", out.id);
-  if (!out.agent.empty() && !is_name(out.agent)) return tl::unexpected(bad_agent(out.id));
+  if (!any_format && out.format != "bt" && out.format != "ot" && out.format != "concord") {
+    return bad(Code::kBadRequest, "format must be bt, ot or concord", out.id);
+  }
+  if (!out.agent.empty() && !is_name(out.agent)) return bad_agent(out.id);
   return out;
 }
 
@@ -237,8 +144,8 @@ Decoded<PathRequest> decode<PathRequest>(std::span<const std::uint8_t> bytes) {
                                           fixed(1 + 16 + 16 + 8 + 1)};
   const auto in = wire::from_bytes<path_request_t>(bytes, kLayout);
   if (!in) return bad(in.error());
-  if (!wire::is_request_id(in->request_id)) return tl::unexpected(bad_id());
-  if (!is_name(in->robot)) return tl::unexpected(bad_agent(in->request_id));
+  if (!wire::is_request_id(in->request_id)) return bad_id();
+  if (!is_name(in->robot)) return bad_agent(in->request_id);
   PathRequest out{in->request_id, in->robot,           std::nullopt, {in->goal[0], in->goal[1]},
                   in->radius,     in->keep_active != 0};
   if (in->has_start) out.start = Eigen::Vector2d(in->start[0], in->start[1]);

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include <concord/transform_t.hpp>
 
@@ -61,6 +63,46 @@ template <class Lcm>
 }
 [[nodiscard]] inline bool is_request_id(const std::string& id) { return !id.empty() && is_printable(id); }
 
+[[nodiscard]] inline tl::unexpected<BadMessage> bad_id() {
+  return bad(Code::kBadRequest, "request id must be 1 to 80 printable characters");
+}
+[[nodiscard]] inline tl::unexpected<BadMessage> bad_author(const std::string& id) {
+  return bad(Code::kBadRequest, "author must be at most 80 printable characters", id);
+}
+inline constexpr const char* kBadAgent = "agent must be 1 to 40 of A-Z a-z 0-9 . _ -, starting with a letter or digit";
+[[nodiscard]] inline tl::unexpected<BadMessage> bad_agent(const std::string& id) {
+  return bad(Code::kBadName, kBadAgent, id);
+}
+
+/// A value that is filled field by field; the first refusal stays, and reaches the asker `id`.
+template <class Value>
+class Filling {
+ public:
+  Filling(Value value, std::string id) : value_(std::move(value)), id_(std::move(id)) {}
+
+  template <class Field>
+  void take(Field Value::*field, Result<Field> read) {
+    if (read) {
+      value_.*field = std::move(*read);
+    } else {
+      require(tl::unexpected(std::move(read.error())));
+    }
+  }
+  void require(Result<void> fine) {
+    if (!fine && !error_) error_ = std::move(fine.error());
+  }
+  [[nodiscard]] const Value& value() const { return value_; }
+  [[nodiscard]] Decoded<Value> done() {
+    if (error_) return bad(std::move(*error_), std::move(id_));
+    return std::move(value_);
+  }
+
+ private:
+  Value value_;
+  std::string id_;
+  std::optional<Error> error_;
+};
+
 template <class Points>
 [[nodiscard]] bool all_finite(const Points& points) {
   return std::all_of(points.begin(), points.end(), [](const auto& p) { return p.allFinite(); });
@@ -80,6 +122,20 @@ template <class Points>
 [[nodiscard]] inline Result<Transform> from_wire(const transform_t& in) {
   return make_transform({in.position[0], in.position[1], in.position[2]},
                         {in.quaternion[0], in.quaternion[1], in.quaternion[2], in.quaternion[3]});
+}
+
+[[nodiscard]] inline Result<std::int64_t> not_negative(std::int64_t number, const char* what) {
+  if (number >= 0) return number;
+  return refuse(Code::kBadRequest, std::string(what) + " must not be negative");
+}
+
+/// Of what is sent in parts; a frame of 1500 bytes holds it and what goes before it.
+inline constexpr std::size_t kPartBytes = 1200;
+
+[[nodiscard]] inline Result<void> check_part(std::int32_t part, std::int32_t parts, std::int64_t most) {
+  if (part < 0 || parts < 1 || part >= parts) return refuse(Code::kMalformed, "part is not one of parts");
+  if (parts > most) return refuse(Code::kTooLarge, "has over " + std::to_string(most) + " parts");
+  return {};
 }
 
 /// Points travel as three arrays: LCM's C++ types would make a vector of each point.

@@ -52,17 +52,26 @@ class Walk {
       case WireField::Kind::kCount: return one_count(field.bytes);
       case WireField::Kind::kArray: return skip(count_ * field.bytes);
       case WireField::Kind::kTexts: return repeat([&] { return one_text(field.bytes); });
-      case WireField::Kind::kRecords: return repeat([&] { return fields(field.record); });
+      case WireField::Kind::kRecord: return one_record(field.record);
+      case WireField::Kind::kRecords: return repeat([&] { return one_record(field.record); });
     }
     return false;
   }
 
   template <class Each>
   bool repeat(Each each) {
-    for (std::int64_t i = 0; i < count_; ++i) {
+    for (std::int64_t i = 0, times = count_; i < times; ++i) {
       if (!each()) return false;
     }
     return true;
+  }
+
+  /// What follows a record repeats the count before it, not one within.
+  bool one_record(std::span<const WireField> record) {
+    const std::int64_t outer = count_;
+    const bool fine = fields(record);
+    count_ = outer;
+    return fine;
   }
 
   bool one_count(std::int64_t most) {

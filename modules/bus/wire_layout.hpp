@@ -15,7 +15,8 @@ struct WireField {
     kCount,   ///< int32, 0 to `bytes`; what the following arrays repeat
     kArray,   ///< the last count times `bytes` bytes
     kTexts,   ///< the last count times a text of at most `bytes` characters
-    kRecords  ///< the last count times `record`
+    kRecord,  ///< `record` once
+    kRecords  ///< the last count times `record`, whose own counts end with it
   };
   Kind kind;
   std::int64_t bytes;
@@ -27,6 +28,9 @@ struct WireField {
 [[nodiscard]] constexpr WireField count(std::int64_t most) { return {WireField::Kind::kCount, most}; }
 [[nodiscard]] constexpr WireField array(std::int64_t bytes_each) { return {WireField::Kind::kArray, bytes_each}; }
 [[nodiscard]] constexpr WireField texts(std::int64_t most) { return {WireField::Kind::kTexts, most}; }
+[[nodiscard]] constexpr WireField record(std::span<const WireField> record) {
+  return {WireField::Kind::kRecord, 0, record};
+}
 [[nodiscard]] constexpr WireField records(std::span<const WireField> record) {
   return {WireField::Kind::kRecords, 0, record};
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "core/convex_cells.hpp"
 #include "core/shape_pieces.hpp"
@@ -14,6 +15,8 @@ namespace {
 constexpr double kThinnestBand = 0.01;
 /// Points of a volume's boundary are its own, metres.
 constexpr double kOnBoundary = 1e-6;
+/// Resolutions nearer than this are one, metres.
+constexpr double kSameResolution = 1e-9;
 
 /// What a selection may look at on the way: pieces that overlap, and cells beside a round end, cost work and give no
 /// voxel; no shape that a person draws comes near.
@@ -120,7 +123,13 @@ struct Select {
   std::int64_t most;
   CellFrame cells{Eigen::Vector3d::Zero(), Eigen::Vector3d::Constant(resolution)};
 
-  Result<std::vector<VoxelIndex>> operator()(const VoxelList& list) const { return expand(list.boxes, most); }
+  Result<std::vector<VoxelIndex>> operator()(const VoxelList& list) const {
+    if (!(std::abs(list.resolution - resolution) < kSameResolution)) {
+      return refuse(Code::kBadResolution, "the voxels are of " + std::to_string(list.resolution) + " m, the map's of " +
+                                              std::to_string(resolution) + " m");
+    }
+    return expand(list.boxes, most);
+  }
   Result<std::vector<VoxelIndex>> operator()(const Line& line) const {
     return gather_touched(pieces_of(line, T_map_frame, cells), 0.5 * line.thickness / resolution, most);
   }

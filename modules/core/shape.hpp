@@ -66,16 +66,16 @@ using Volume = std::variant<Box, OrientedBox, Prism>;
 /// Whether a shape is one, wherever it lies. Refused: NaN or infinity (kNotFinite); too few points, no area, a polygon
 /// that crosses or touches itself or is not plane, a negative size or thickness, a box turned inside out (kBadShape);
 /// an oriented box whose transform is no rotation (kBadTransform); over kMaxShapePoints (kTooLarge); a coordinate or
-/// voxel beyond any map (kOutOfBounds); a list of no voxels (kEmpty).
+/// voxel beyond any map (kOutOfBounds); a list of no voxels (kEmpty), or one of no resolution (kBadResolution).
 [[nodiscard]] Result<void> check(const Shape& shape);
 [[nodiscard]] Result<void> check(const Volume& volume);
 
 /// The voxels of the map that a shape takes, by the rules above; sorted and unique. `T_map_frame` places the shape's
-/// frame in the map (a VoxelList does not heed it). Refused: what `check` refuses; a resolution that is none
-/// (kBadResolution); voxels beyond kMaxVoxel (kOutOfBounds); over `most` voxels, found out by counting before memory is
-/// taken for them, or so many parts of it in one place that counting is dear (kTooLarge); none, which only a prism far
-/// thinner than kOnFace has (kEmpty). Time and memory are bounded by `most`, whatever the shape. @pre T_map_frame is a
-/// rotation and a translation (make_transform); most < 2^40.
+/// frame in the map (a VoxelList does not heed it). Refused: what `check` refuses; a resolution that is none, or a
+/// VoxelList of another (kBadResolution); voxels beyond kMaxVoxel (kOutOfBounds); over `most` voxels, found out by
+/// counting before memory is taken for them, or so many parts of it in one place that counting is dear (kTooLarge);
+/// none, which only a prism far thinner than kOnFace has (kEmpty). Time and memory are bounded by `most`, whatever the
+/// shape. @pre T_map_frame is a rotation and a translation (make_transform); most < 2^40.
 [[nodiscard]] Result<std::vector<VoxelIndex>> select(const Shape& shape, const Transform& T_map_frame,
                                                      double resolution, std::int64_t most);
 

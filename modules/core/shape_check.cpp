@@ -51,6 +51,8 @@ Result<void> fine(const Result<std::vector<Triangle>>& triangles) {
 
 struct Check {
   Result<void> operator()(const VoxelList& list) const {
+    if (!std::isfinite(list.resolution)) return refuse(Code::kNotFinite, "the voxels' resolution is not finite");
+    if (list.resolution <= 0) return refuse(Code::kBadResolution, "the voxels' resolution must be above 0");
     for (const VoxelBox& box : list.boxes) {
       if (!in_bounds(box.min) || !in_bounds(box.max)) {
         return refuse(Code::kOutOfBounds, "voxel index is beyond +-" + std::to_string(kMaxVoxel));

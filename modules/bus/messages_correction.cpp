@@ -1,0 +1,314 @@
+// Translators of what people do to the map: core/corrections.hpp.
+
+#include <concord/edit_t.hpp>
+#include <concord/lease_request_t.hpp>
+#include <concord/localise_request_t.hpp>
+#include <concord/set_transform_t.hpp>
+#include <concord/undo_t.hpp>
+#include <concord/weight_request_t.hpp>
+#include <concord/zone_request_t.hpp>
+
+#include "bus/translate_shape.hpp"
+
+namespace concord {
+namespace {
+
+using wire::bad;
+
+constexpr WireField kAsker[] = {fixed(8), text(wire::kIdLength), text(wire::kIdLength)};  ///< utime, id, author
+constexpr WireField kFrame[] = {text(wire::kNameLength), text(wire::kNameLength)};        ///< frame_agent, frame_id
+
+/// The id that the asker gave: of the request, unless it is that of what it makes.
+template <class Lcm>
+auto& id_of(Lcm& message) {
+  if constexpr (requires { message.request_id; }) {
+    return message.request_id;
+  } else if constexpr (requires { message.lease_id; }) {
+    return message.lease_id;
+  } else {
+    return message.edit_id;
+  }
+}
+
+/// A message with what every correction has.
+template <class Lcm, class Value>
+Lcm asked_by(const Value& value, std::int64_t utime) {
+  Lcm out{};
+  out.utime = utime;
+  id_of(out) = value.id;
+  out.author = value.author;
+  return out;
+}
+
+template <class Value, class Lcm>
+wire::Filling<Value> asked_by(const Lcm& in) {
+  Value out;
+  out.id = id_of(in);
+  out.author = in.author;
+  if constexpr (requires { out.utime; }) out.utime = in.utime;
+  return {std::move(out), id_of(in)};
+}
+
+/// The message, once it is clear who asks.
+template <class Lcm>
+Decoded<Lcm> read(std::span<const std::uint8_t> bytes, std::span<const WireField> layout) {
+  auto in = wire::from_bytes<Lcm>(bytes, layout);
+  if (!in) return bad(in.error());
+  if (!wire::is_request_id(id_of(*in))) return wire::bad_id();
+  if (!wire::is_printable(in->author)) return wire::bad_author(id_of(*in));
+  return std::move(*in);
+}
+
+template <class Lcm>
+void put_frame(const WorkFrame& frame, Lcm& out) {
+  out.frame_agent = frame.agent;
+  out.frame_id = frame.frame_id;
+}
+
+template <class Lcm>
+Result<WorkFrame> frame_of(const Lcm& in) {
+  if (!in.frame_agent.empty() && !is_name(in.frame_agent)) {
+    return refuse(Code::kBadName, "frame_agent must be empty (the map's frame) or an agent's id");
+  }
+  if (!in.frame_id.empty() && (in.frame_agent.empty() || !is_name(in.frame_id))) {
+    return refuse(Code::kBadFrame, "frame_id must be empty, or a name that comes with frame_agent");
+  }
+  return WorkFrame{in.frame_agent, in.frame_id};
+}
+
+Result<std::int64_t> base_of(std::int64_t base_revision) {
+  if (base_revision >= kAnyRevision) return base_revision;
+  return refuse(Code::kBadRequest, "base_revision must be a revision, or -1");
+}
+
+std::int8_t to_wire(EditRequest::Op op) {
+  switch (op) {
+    case EditRequest::Op::kAdd: return edit_t::ADD;
+    case EditRequest::Op::kDelete: return edit_t::DELETE;
+    case EditRequest::Op::kMove: return edit_t::MOVE;
+  }
+  return 0;
+}
+
+Result<EditRequest::Op> edit_op(std::int8_t op) {
+  switch (op) {
+    case edit_t::ADD: return EditRequest::Op::kAdd;
+    case edit_t::DELETE: return EditRequest::Op::kDelete;
+    case edit_t::MOVE: return EditRequest::Op::kMove;
+    default: return refuse(Code::kBadRequest, "op must be ADD, DELETE or MOVE");
+  }
+}
+
+std::int8_t to_wire(ZoneRequest::Op op) {
+  switch (op) {
+    case ZoneRequest::Op::kAdd: return zone_request_t::ADD;
+    case ZoneRequest::Op::kChange: return zone_request_t::CHANGE;
+    case ZoneRequest::Op::kDelete: return zone_request_t::DELETE;
+  }
+  return 0;
+}
+
+Result<ZoneRequest::Op> zone_op(std::int8_t op) {
+  switch (op) {
+    case zone_request_t::ADD: return ZoneRequest::Op::kAdd;
+    case zone_request_t::CHANGE: return ZoneRequest::Op::kChange;
+    case zone_request_t::DELETE: return ZoneRequest::Op::kDelete;
+    default: return refuse(Code::kBadRequest, "op must be ADD, CHANGE or DELETE");
+  }
+}
+
+Result<bool> redo_of(std::int8_t op) {
+  if (op != undo_t::UNDO && op != undo_t::REDO) return refuse(Code::kBadRequest, "op must be UNDO or REDO");
+  return op == undo_t::REDO;
+}
+
+Result<bool> hold_of(std::int8_t op) {
+  if (op != lease_request_t::HOLD && op != lease_request_t::FREE) {
+    return refuse(Code::kBadRequest, "op must be HOLD or FREE");
+  }
+  return op == lease_request_t::HOLD;
+}
+
+Result<std::string> edit_id_of(const undo_t& in) {
+  if (wire::is_request_id(in.edit_id)) return in.edit_id;
+  return refuse(Code::kBadRequest, "edit_id must be 1 to 80 printable characters");
+}
+
+Result<std::string> agent_of(const std::string& agent) {
+  if (is_name(agent)) return agent;
+  return refuse(Code::kBadName, wire::kBadAgent);
+}
+
+Result<std::string> frame_id_of(const std::string& frame_id) {
+  if (frame_id.empty() || is_name(frame_id)) return frame_id;
+  return refuse(Code::kBadFrame, "frame_id must be empty or a name");
+}
+
+Result<int> weight_of(std::int32_t weight) {
+  if (weight >= 1 && weight <= 1000) return weight;
+  return refuse(Code::kBadRequest, "weight must lie between 1 and 1000");
+}
+
+Result<Eigen::Vector3d> move_of(const edit_t& in) {
+  const Eigen::Vector3d move(in.move[0], in.move[1], in.move[2]);
+  if (!move.allFinite()) return refuse(Code::kNotFinite, "move is not finite");
+  if (move.cwiseAbs().maxCoeff() > kFarthest) {
+    return refuse(Code::kOutOfBounds, "move leads beyond the map; is it in metres?");
+  }
+  return move;
+}
+
+}  // namespace
+
+Bytes encode(const EditRequest& value) {
+  auto out = asked_by<edit_t>(value, value.utime);
+  out.op = to_wire(value.op);
+  out.shape = wire::to_wire(value.shape);
+  for (int i = 0; i < 3; ++i) out.move[i] = value.move[i];
+  put_frame(value.frame, out);
+  out.base_revision = value.base_revision;
+  return wire::to_bytes(out);
+}
+
+template <>
+Decoded<EditRequest> decode<EditRequest>(std::span<const std::uint8_t> bytes) {
+  static constexpr WireField kLayout[] = {record(kAsker), fixed(1), wire::kShape, fixed(24), record(kFrame), fixed(8)};
+  const auto in = read<edit_t>(bytes, kLayout);
+  if (!in) return tl::unexpected(in.error());
+  auto out = asked_by<EditRequest>(*in);
+  out.take(&EditRequest::op, edit_op(in->op));
+  out.take(&EditRequest::shape, wire::shape_from_wire(in->shape));
+  if (in->op == edit_t::MOVE) out.take(&EditRequest::move, move_of(*in));
+  out.take(&EditRequest::frame, frame_of(*in));
+  out.take(&EditRequest::base_revision, base_of(in->base_revision));
+  return out.done();
+}
+
+Bytes encode(const UndoRequest& value) {
+  auto out = asked_by<undo_t>(value, value.utime);
+  out.op = value.redo ? undo_t::REDO : undo_t::UNDO;
+  out.edit_id = value.edit_id;
+  return wire::to_bytes(out);
+}
+
+template <>
+Decoded<UndoRequest> decode<UndoRequest>(std::span<const std::uint8_t> bytes) {
+  static constexpr WireField kLayout[] = {record(kAsker), fixed(1), text(wire::kIdLength)};
+  const auto in = read<undo_t>(bytes, kLayout);
+  if (!in) return tl::unexpected(in.error());
+  auto out = asked_by<UndoRequest>(*in);
+  out.take(&UndoRequest::redo, redo_of(in->op));
+  out.take(&UndoRequest::edit_id, edit_id_of(*in));
+  return out.done();
+}
+
+Bytes encode(const ZoneRequest& value) {
+  auto out = asked_by<zone_request_t>(value, value.utime);
+  out.op = to_wire(value.op);
+  out.name = value.name;
+  out.kind = wire::to_wire(value.kind);
+  out.volume = wire::to_wire(value.volume);
+  put_frame(value.frame, out);
+  out.base_revision = value.base_revision;
+  return wire::to_bytes(out);
+}
+
+template <>
+Decoded<ZoneRequest> decode<ZoneRequest>(std::span<const std::uint8_t> bytes) {
+  static constexpr WireField kLayout[] = {record(kAsker), fixed(1), text(wire::kTitleLength), fixed(1), wire::kShape,
+                                          record(kFrame), fixed(8)};
+  const auto in = read<zone_request_t>(bytes, kLayout);
+  if (!in) return tl::unexpected(in.error());
+  auto out = asked_by<ZoneRequest>(*in);
+  out.take(&ZoneRequest::op, zone_op(in->op));
+  out.take(&ZoneRequest::name, wire::title_of(in->name));
+  if (in->op != zone_request_t::DELETE) {
+    out.take(&ZoneRequest::kind, wire::zone_kind(in->kind));
+    out.take(&ZoneRequest::volume, wire::volume_from_wire(in->volume));
+  }
+  out.take(&ZoneRequest::frame, frame_of(*in));
+  out.take(&ZoneRequest::base_revision, base_of(in->base_revision));
+  return out.done();
+}
+
+Bytes encode(const LeaseRequest& value) {
+  auto out = asked_by<lease_request_t>(value, value.utime);
+  out.op = value.hold ? lease_request_t::HOLD : lease_request_t::FREE;
+  out.volume = wire::to_wire(value.volume);
+  put_frame(value.frame, out);
+  return wire::to_bytes(out);
+}
+
+template <>
+Decoded<LeaseRequest> decode<LeaseRequest>(std::span<const std::uint8_t> bytes) {
+  static constexpr WireField kLayout[] = {record(kAsker), fixed(1), wire::kShape, record(kFrame)};
+  const auto in = read<lease_request_t>(bytes, kLayout);
+  if (!in) return tl::unexpected(in.error());
+  auto out = asked_by<LeaseRequest>(*in);
+  out.take(&LeaseRequest::hold, hold_of(in->op));
+  if (in->op != lease_request_t::FREE) out.take(&LeaseRequest::volume, wire::volume_from_wire(in->volume));
+  out.take(&LeaseRequest::frame, frame_of(*in));
+  return out.done();
+}
+
+Bytes encode(const WeightRequest& value) {
+  auto out = asked_by<weight_request_t>(value, value.utime);
+  out.agent = value.agent;
+  out.weight = value.weight;
+  return wire::to_bytes(out);
+}
+
+template <>
+Decoded<WeightRequest> decode<WeightRequest>(std::span<const std::uint8_t> bytes) {
+  static constexpr WireField kLayout[] = {record(kAsker), text(wire::kNameLength), fixed(4)};
+  const auto in = read<weight_request_t>(bytes, kLayout);
+  if (!in) return tl::unexpected(in.error());
+  auto out = asked_by<WeightRequest>(*in);
+  out.take(&WeightRequest::agent, agent_of(in->agent));
+  out.take(&WeightRequest::weight, weight_of(in->weight));
+  return out.done();
+}
+
+Bytes encode(const LocaliseRequest& value) {
+  auto out = asked_by<localise_request_t>(value, value.utime);
+  out.agent = value.agent;
+  out.T_frame_base = wire::to_wire(value.T_frame_base);
+  put_frame(value.frame, out);
+  return wire::to_bytes(out);
+}
+
+template <>
+Decoded<LocaliseRequest> decode<LocaliseRequest>(std::span<const std::uint8_t> bytes) {
+  static constexpr WireField kLayout[] = {record(kAsker), text(wire::kNameLength), fixed(wire::kTransformBytes),
+                                          record(kFrame)};
+  const auto in = read<localise_request_t>(bytes, kLayout);
+  if (!in) return tl::unexpected(in.error());
+  auto out = asked_by<LocaliseRequest>(*in);
+  out.take(&LocaliseRequest::agent, agent_of(in->agent));
+  out.take(&LocaliseRequest::T_frame_base, wire::from_wire(in->T_frame_base));
+  out.take(&LocaliseRequest::frame, frame_of(*in));
+  return out.done();
+}
+
+Bytes encode(const TransformRequest& value, std::int64_t utime) {
+  auto out = asked_by<set_transform_t>(value, utime);
+  out.agent = value.agent;
+  out.frame_id = value.frame_id;
+  out.T_map_agent = wire::to_wire(value.T_map_agent);
+  return wire::to_bytes(out);
+}
+
+template <>
+Decoded<TransformRequest> decode<TransformRequest>(std::span<const std::uint8_t> bytes) {
+  static constexpr WireField kLayout[] = {record(kAsker), text(wire::kNameLength), text(wire::kNameLength),
+                                          fixed(wire::kTransformBytes)};
+  const auto in = read<set_transform_t>(bytes, kLayout);
+  if (!in) return tl::unexpected(in.error());
+  auto out = asked_by<TransformRequest>(*in);
+  out.take(&TransformRequest::agent, agent_of(in->agent));
+  out.take(&TransformRequest::frame_id, frame_id_of(in->frame_id));
+  out.take(&TransformRequest::T_map_agent, wire::from_wire(in->T_map_agent));
+  return out.done();
+}
+
+}  // namespace concord
