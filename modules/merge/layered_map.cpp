@@ -44,6 +44,14 @@ void LayeredMap::remove_layer(const std::string& agent) {
   layers_.erase(it);
 }
 
+void LayeredMap::set_weight(const std::string& agent, int weight) {
+  const auto it = layers_.find(agent);
+  assert(it != layers_.end() && weight >= 1 && weight <= 1000);
+  if (it->second.weight == weight) return;
+  it->second.weight = weight;
+  mark(it->second);
+}
+
 /// All that the layer contributes to, where it lies now.
 void LayeredMap::mark(const AgentLayer& layer) {
   if (!layer.lattice) return;
@@ -74,7 +82,7 @@ void LayeredMap::fold_into(const BrickSet& dirty, Changes& changes) {
   for (const auto& [agent, layer] : layers_) {
     if (layer.T_map_agent) aligned.push_back({&layer.map, *layer.T_map_agent, layer.weight});
   }
-  for (FoldedBrick& folded : fold(aligned, edits_.pins(), policy_, resolution_, dirty)) {
+  for (FoldedBrick& folded : fold(aligned, pins_, policy_, resolution_, dirty)) {
     if (merged_.values.set(folded.index, std::move(folded.values))) changes.map.push_back(folded.index);
     if (merged_.conflicts.set(folded.index, Brick::uniform(folded.conflicts, kOccupied))) {
       changes.conflicts.push_back(folded.index);

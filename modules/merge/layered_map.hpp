@@ -9,8 +9,6 @@
 #include "core/brick_set.hpp"
 #include "core/compose.hpp"
 #include "core/lattice_transform.hpp"
-#include "core/requests.hpp"
-#include "merge/edit_layer.hpp"
 
 namespace concord {
 
@@ -19,7 +17,9 @@ namespace concord {
 /// Its map equals, to the byte, what `compose` gives for the present layers, whatever the order of calls.
 class LayeredMap {
  public:
-  LayeredMap(double resolution, Policy policy) : resolution_(resolution), policy_(policy) {}
+  /// `pins`, which must outlive this, may only change together with `mark`.
+  LayeredMap(double resolution, Policy policy, const PinMap& pins)
+      : resolution_(resolution), policy_(policy), pins_(pins) {}
 
   /// The agent's layer begins anew, empty, in this frame and not aligned.
   void begin_layer(const std::string& agent, const std::string& frame_id, int weight);
@@ -30,10 +30,11 @@ class LayeredMap {
   /// Whether all of the layer would lie within the map's bounds there.
   [[nodiscard]] bool fits(const std::string& agent, const Transform& T_map_agent) const;
   void remove_layer(const std::string& agent);
+  /// @pre begin_layer was called for the agent.
+  void set_weight(const std::string& agent, int weight);
 
-  /// @pre not applied yet, see EditLayer.
-  void apply(const EditRequest& edit) { edits_.apply(edit, dirty_); }
-  [[nodiscard]] const EditLayer& edits() const { return edits_; }
+  /// The pins of these bricks changed.
+  void mark(const BrickSet& touched) { dirty_.insert(touched); }
 
   /// What `refold` changed, ordered by tile and by position in the tile.
   struct Changes {
@@ -64,8 +65,8 @@ class LayeredMap {
 
   double resolution_;
   Policy policy_;
+  const PinMap& pins_;
   std::map<std::string, AgentLayer> layers_;
-  EditLayer edits_;
   BrickSet dirty_;
   MergedMap merged_;
 };

@@ -2,43 +2,37 @@
 
 #include <filesystem>
 #include <functional>
-#include <string>
-#include <vector>
 
-#include "core/requests.hpp"
+#include "core/corrections.hpp"
 #include "store/database.hpp"
 
 namespace concord {
 
-/// What people made, on disk before it is acknowledged: transforms by agent and frame, and edits in their order.
+/// What people made, on disk before it is acknowledged: their corrections in the order of revisions.
 class MergeStore {
  public:
-  /// Opens or creates `file`. Edits count in voxels, so a store belongs to one resolution.
+  /// Opens or creates `file`; brings one of an earlier version up to this one. Edits count in voxels, so a store
+  /// belongs to one resolution.
   /// @throws std::runtime_error if it cannot be opened, ConfigError if it was made for another resolution.
   MergeStore(const std::filesystem::path& file, double resolution);
 
-  /// Where an agent lies. It holds for one frame of one incarnation (see stream.md): what was removed and comes again
-  /// is not what was placed.
-  struct Placed {
-    std::string agent;
-    std::string frame_id;
-    std::int64_t incarnation = 0;
-    bool has_layer = false;  ///< false: it had sent poses only
-    Transform T_map_agent = Transform::Identity();
-  };
-  [[nodiscard]] Result<void> put_transform(const Placed& placed, const std::string& author, std::int64_t utime);
-  [[nodiscard]] Result<void> put_edit(const EditRequest& edit);
+  /// All of it or nothing, synced once. Refused (kIo): a full disk, say; nothing has changed then, and the next one
+  /// may succeed. @pre its revision and id are new.
+  [[nodiscard]] Result<void> put(const Correction& correction);
 
-  [[nodiscard]] Result<std::vector<Placed>> transforms();
-  /// Hands on each edit in the order in which they were put.
-  [[nodiscard]] Result<void> for_each_edit(const std::function<void(const EditRequest&)>& visit);
+  /// Hands on each correction in the order of revisions. Refused (kIo): the file was damaged.
+  [[nodiscard]] Result<void> for_each(const std::function<void(Correction)>& visit);
 
  private:
+  struct PutDetail;
+  struct Details;
+
   void check_resolution(double resolution);
+  [[nodiscard]] Result<decltype(Correction::what)> detail(std::int64_t revision, int kind, const std::string& subject,
+                                                          Details& read);
 
   Database database_;
-  Statement put_transform_;
-  Statement put_edit_;
+  Statement put_correction_, put_edit_, put_zone_, put_placement_, put_weight_;
 };
 
 }  // namespace concord

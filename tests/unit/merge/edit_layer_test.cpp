@@ -11,49 +11,81 @@ namespace {
 
 using Pin = PinMap::Pin;
 
-Edit edit_of(const std::string& id, std::vector<VoxelIndex> added, std::vector<VoxelIndex> deleted) {
-  return {id, "eva", 0, std::move(added), std::move(deleted)};
+Correction::Edit edit_of(std::vector<VoxelIndex> added, std::vector<VoxelIndex> deleted) {
+  return {EditRequest::Op::kAdd, std::move(added), std::move(deleted)};
 }
 
-TEST(EditLayer, LatestActiveEditWinsInItsVoxels) {
+/// An edit layer that counts revisions by itself.
+struct Counting {
   EditLayer layer;
   BrickSet touched;
-  layer.apply(edit_of("one", {{0, 0, 0}, {0, 0, 1}}, {}), touched);
-  layer.apply(edit_of("two", {}, {{0, 0, 1}}), touched);
-  EXPECT_EQ(layer.pins().at({0, 0, 0}), Pin::kAdded);
-  EXPECT_EQ(layer.pins().at({0, 0, 1}), Pin::kDeleted);
-  ASSERT_TRUE(layer.undo("two", touched));
-  EXPECT_EQ(layer.pins().at({0, 0, 1}), Pin::kAdded);
-  ASSERT_TRUE(layer.undo("one", touched));
-  EXPECT_TRUE(layer.pins().empty());
-  ASSERT_TRUE(layer.redo("two", touched));
-  ASSERT_TRUE(layer.redo("one", touched));
-  EXPECT_EQ(layer.pins().at({0, 0, 1}), Pin::kDeleted) << "an edit keeps its place in the history";
+  std::int64_t revision = 0;
+
+  void apply(const std::string& id, std::vector<VoxelIndex> added, std::vector<VoxelIndex> deleted) {
+    layer.apply(++revision, id, by_brick(edit_of(std::move(added), std::move(deleted))), touched);
+  }
+  [[nodiscard]] Result<void> undo(const std::string& id, bool redo = false) {
+    const auto can = layer.check({id, redo});
+    if (can) layer.apply(++revision, Correction::Undo{id, redo}, touched);
+    return can;
+  }
+  [[nodiscard]] Result<void> redo(const std::string& id) { return undo(id, true); }
+};
+
+TEST(EditLayer, LatestActiveEditWinsInItsVoxels) {
+  Counting edits;
+  edits.apply("one", {{0, 0, 0}, {0, 0, 1}}, {});
+  edits.apply("two", {}, {{0, 0, 1}});
+  EXPECT_EQ(edits.layer.pins().at({0, 0, 0}), Pin::kAdded);
+  EXPECT_EQ(edits.layer.pins().at({0, 0, 1}), Pin::kDeleted);
+  ASSERT_TRUE(edits.undo("two"));
+  EXPECT_EQ(edits.layer.pins().at({0, 0, 1}), Pin::kAdded);
+  ASSERT_TRUE(edits.undo("one"));
+  EXPECT_TRUE(edits.layer.pins().empty());
+  ASSERT_TRUE(edits.redo("two"));
+  ASSERT_TRUE(edits.redo("one"));
+  EXPECT_EQ(edits.layer.pins().at({0, 0, 1}), Pin::kDeleted) << "an edit keeps its place in the history";
 }
 
 TEST(EditLayer, SaysWhatCannotBeUndone) {
-  EditLayer layer;
-  BrickSet touched;
-  EXPECT_EQ(layer.undo("none", touched).error().code, Code::kNotFound);
-  layer.apply(edit_of("one", {{0, 0, 0}}, {}), touched);
-  EXPECT_EQ(layer.redo("one", touched).error().code, Code::kConflict);
-  ASSERT_TRUE(layer.undo("one", touched));
-  EXPECT_EQ(layer.undo("one", touched).error().code, Code::kConflict);
+  Counting edits;
+  EXPECT_EQ(edits.undo("none").error().code, Code::kNotFound);
+  edits.apply("one", {{0, 0, 0}}, {});
+  EXPECT_EQ(edits.redo("one").error().code, Code::kConflict);
+  ASSERT_TRUE(edits.undo("one"));
+  EXPECT_EQ(edits.undo("one").error().code, Code::kConflict);
 }
 
 TEST(EditLayer, TouchesOnlyBricksWhosePinsChange) {
-  EditLayer layer;
-  BrickSet first, second;
-  layer.apply(edit_of("one", {{0, 0, 0}, {100, 0, 0}}, {}), first);
-  EXPECT_EQ(first.size(), 2u);
-  layer.apply(edit_of("two", {{0, 0, 0}, {0, 9, 0}}, {}), second);
-  EXPECT_EQ(second.size(), 1u) << "pinned alike before";
+  Counting edits;
+  edits.apply("one", {{0, 0, 0}, {100, 0, 0}}, {});
+  EXPECT_EQ(edits.touched.size(), 2u);
+  edits.touched.clear();
+  edits.apply("two", {{0, 0, 0}, {0, 9, 0}}, {});
+  EXPECT_EQ(edits.touched.size(), 1u) << "pinned alike before";
+}
+
+TEST(EditLayer, KnowsWhatChangedSince) {
+  Counting edits;
+  edits.apply("one", {{0, 0, 0}}, {});
+  edits.apply("two", {{0, 0, 1}}, {});
+  const auto changed = [&](VoxelIndex voxel, std::int64_t base) {
+    return edits.layer.changed_since(by_brick(edit_of({}, {voxel})), base);
+  };
+  EXPECT_TRUE(changed({0, 0, 0}, 0));
+  EXPECT_FALSE(changed({0, 0, 0}, 1)) << "the later edit in this brick has other voxels";
+  EXPECT_TRUE(changed({0, 0, 1}, 1));
+  EXPECT_FALSE(changed({0, 0, 1}, 2));
+  EXPECT_FALSE(changed({50, 0, 1}, 0));
+  ASSERT_TRUE(edits.undo("one"));
+  EXPECT_TRUE(changed({0, 0, 0}, 2)) << "an undo is a change";
+  EXPECT_FALSE(changed({0, 0, 1}, 2));
 }
 
 /// The rule itself: edits in their order, those that are active.
 class Naive {
  public:
-  void apply(const Edit& edit) { edits_.push_back({edit, true}); }
+  void apply(const Correction::Edit& edit) { edits_.push_back({edit, true}); }
   void set_active(std::size_t i, bool active) { edits_[i].second = active; }
   [[nodiscard]] PinMap pins() const {
     PinMap out;
@@ -66,8 +98,17 @@ class Naive {
   }
 
  private:
-  std::vector<std::pair<Edit, bool>> edits_;
+  std::vector<std::pair<Correction::Edit, bool>> edits_;
 };
+
+Correction::Edit random_edit(std::mt19937& random) {
+  std::map<VoxelIndex, bool> voxels;
+  const auto c = [&] { return static_cast<std::int32_t>(random() % 12) - 6; };
+  for (int i = 0; i < 15; ++i) voxels[{c(), c(), c()}] = random() % 2 == 0;
+  Correction::Edit edit;
+  for (const auto& [voxel, add] : voxels) (add ? edit.added : edit.deleted).push_back(voxel);
+  return edit;
+}
 
 RC_GTEST_PROP(EditLayer, AnyOrderOfUndoAndRedoIsTheRule, (std::uint32_t seed)) {
   std::mt19937 random(seed);
@@ -75,24 +116,18 @@ RC_GTEST_PROP(EditLayer, AnyOrderOfUndoAndRedoIsTheRule, (std::uint32_t seed)) {
   Naive naive;
   PinMap before;
   std::vector<bool> active;
-  std::vector<std::string> ids;
-  for (int step = 0; step < 80; ++step) {
+  for (int step = 1; step <= 80; ++step) {
     BrickSet touched;
     if (active.empty() || random() % 2 == 0) {
-      std::map<VoxelIndex, bool> voxels;
-      const auto c = [&] { return static_cast<std::int32_t>(random() % 12) - 6; };
-      for (int i = 0; i < 15; ++i) voxels[{c(), c(), c()}] = random() % 2 == 0;
-      Edit edit = edit_of("edit" + std::to_string(step), {}, {});
-      for (const auto& [voxel, add] : voxels) (add ? edit.added : edit.deleted).push_back(voxel);
-      layer.apply(edit, touched);
+      const Correction::Edit edit = random_edit(random);
+      layer.apply(step, "edit" + std::to_string(active.size()), by_brick(edit), touched);
       naive.apply(edit);
       active.push_back(true);
-      ids.push_back(edit.id);
     } else {
       const std::size_t i = random() % active.size();
-      const std::string& id = ids[i];
-      const auto done = active[i] ? layer.undo(id, touched) : layer.redo(id, touched);
-      RC_ASSERT(done.has_value());
+      const Correction::Undo undo{"edit" + std::to_string(i), !active[i]};
+      RC_ASSERT(layer.check(undo).has_value());
+      layer.apply(step, undo, touched);
       active[i] = !active[i];
       naive.set_active(i, active[i]);
     }

@@ -1,0 +1,85 @@
+#include "merge/leases.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "merge/region.hpp"
+
+namespace concord {
+namespace {
+
+tl::unexpected<Error> locked_by(const Lease& lease) {
+  return refuse(Code::kLocked, lease.author + " works there; ask them, or again in some seconds");
+}
+
+}  // namespace
+
+Result<Lease> Leases::check(const LeaseRequest& request, const Transform& T_map_frame, std::int64_t now) const {
+  const auto same = held_.find(request.id);
+  if (same != held_.end() && same->second.bars(request.author, now)) {
+    return refuse(Code::kLocked, "this lease is " + same->second.lease.author + "'s; choose another id");
+  }
+  const auto there = std::ranges::count_if(held_, [&](const auto& entry) { return entry.second.lease.until > now; });
+  if (same == held_.end() && there >= static_cast<std::ptrdiff_t>(kMaxLeases)) {
+    return refuse(Code::kBusy, "all " + std::to_string(kMaxLeases) + " leases are held; ask again in some seconds");
+  }
+  const auto free = check(bounds_in_map(request.volume, T_map_frame), request.author, now);
+  if (!free) return tl::unexpected(free.error());
+  return Lease{request.id, request.author, request.volume, T_map_frame, now + kLeaseTime};
+}
+
+void Leases::hold(Lease lease) {
+  const Eigen::AlignedBox3d bounds = bounds_in_map(lease.volume, lease.T_map_lease);
+  const std::string id = lease.id;
+  held_[id] = {std::move(lease), bounds};
+}
+
+Result<bool> Leases::free(const LeaseRequest& request, std::int64_t now) {
+  const auto it = held_.find(request.id);
+  if (it == held_.end()) return false;
+  if (it->second.bars(request.author, now)) return locked_by(it->second.lease);
+  held_.erase(it);
+  return true;
+}
+
+bool Leases::expire(std::int64_t now) {
+  return std::erase_if(held_, [&](const auto& entry) { return entry.second.lease.until <= now; }) > 0;
+}
+
+Result<void> Leases::check(const PinnedBricks& voxels, const std::string& author, std::int64_t now) const {
+  for (const auto& [id, held] : held_) {
+    if (!held.bars(author, now)) continue;
+    const Eigen::Vector3d side = Eigen::Vector3d::Constant(kBrickSide * resolution_);
+    for (const auto& [index, pins] : voxels) {
+      const VoxelIndex first = origin_of(index);
+      const Eigen::Vector3d corner = Eigen::Vector3d(first.x, first.y, first.z) * resolution_;
+      if (overlap(held.bounds, {corner, corner + side}) && holds_any(held, index, pins)) return locked_by(held.lease);
+    }
+  }
+  return {};
+}
+
+bool Leases::holds_any(const Held& held, BrickIndex index, const PinBrick& pins) const {
+  for (int word = 0; word < 8; ++word) {
+    for (std::uint64_t bits = pins.occupied[word] | pins.free[word]; bits != 0; bits &= bits - 1) {
+      const VoxelIndex voxel = voxel_at(index, word * 64 + std::countr_zero(bits));
+      if (contains(held.lease.volume, held.lease.T_map_lease, centre_of(voxel, resolution_))) return true;
+    }
+  }
+  return false;
+}
+
+Result<void> Leases::check(const Eigen::AlignedBox3d& bounds, const std::string& author, std::int64_t now) const {
+  for (const auto& [id, held] : held_) {
+    if (held.bars(author, now) && overlap(held.bounds, bounds)) return locked_by(held.lease);
+  }
+  return {};
+}
+
+std::vector<Lease> Leases::list() const {
+  std::vector<Lease> leases;
+  for (const auto& [id, held] : held_) leases.push_back(held.lease);
+  return leases;
+}
+
+}  // namespace concord

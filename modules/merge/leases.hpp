@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "core/corrections.hpp"
+#include "core/error.hpp"
+#include "merge/edit_layer.hpp"
+
+namespace concord {
+
+/// From each hold: longer than a person's network hiccup, short enough that who vanished does not lock others out.
+inline constexpr std::int64_t kLeaseTime = 10'000'000;
+
+/// Who works where. Not kept over a restart: a holder renews every few seconds, which takes the lease anew.
+class Leases {
+ public:
+  explicit Leases(double resolution) : resolution_(resolution) {}
+
+  /// What a hold leads to. Refused: an overlap with another author's lease, by bounding boxes, or an id that is another
+  /// author's (kLocked); all kMaxLeases taken (kBusy). Those that are over at `now` do not count.
+  [[nodiscard]] Result<Lease> check(const LeaseRequest& request, const Transform& T_map_frame, std::int64_t now) const;
+  /// @pre check gave it.
+  void hold(Lease lease);
+  /// Refused: another author's (kLocked). Returns whether there was one: freed twice is free.
+  [[nodiscard]] Result<bool> free(const LeaseRequest& request, std::int64_t now);
+  /// Returns whether any was over.
+  bool expire(std::int64_t now);
+
+  /// Refused (kLocked): one of the voxels has its centre in another author's lease.
+  [[nodiscard]] Result<void> check(const PinnedBricks& voxels, const std::string& author, std::int64_t now) const;
+  /// Refused (kLocked): the bounding box overlaps that of another author's lease.
+  [[nodiscard]] Result<void> check(const Eigen::AlignedBox3d& bounds, const std::string& author,
+                                   std::int64_t now) const;
+
+  /// In the order of their ids.
+  [[nodiscard]] std::vector<Lease> list() const;
+
+ private:
+  struct Held {
+    Lease lease;
+    Eigen::AlignedBox3d bounds;
+    [[nodiscard]] bool bars(const std::string& author, std::int64_t now) const {
+      return lease.author != author && lease.until > now;
+    }
+  };
+  [[nodiscard]] bool holds_any(const Held& held, BrickIndex index, const PinBrick& pins) const;
+
+  double resolution_;
+  std::map<std::string, Held> held_;
+};
+
+}  // namespace concord

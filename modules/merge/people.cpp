@@ -1,0 +1,157 @@
+#include "merge/people.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+#include "merge/edit_evaluation.hpp"
+#include "merge/region.hpp"
+
+namespace concord {
+namespace {
+
+bool is_edit(Operation::Kind kind) {
+  return kind == Operation::Kind::kAdd || kind == Operation::Kind::kDelete || kind == Operation::Kind::kMove;
+}
+
+bool matches(const Operation& operation, const HistoryRequest& request) {
+  const auto concerns = [&](const std::string& subject) {
+    return subject == operation.subject || (is_edit(operation.kind) && subject == operation.id);
+  };
+  return (request.author.empty() || operation.author == request.author) &&
+         (request.subject.empty() || concerns(request.subject)) && (!request.kind || operation.kind == *request.kind) &&
+         operation.utime >= request.since && (request.until == 0 || operation.utime < request.until);
+}
+
+}  // namespace
+
+Result<Correction::Edit> People::check(const EditRequest& request, const Transform& T_map_frame, const BrickMap& map,
+                                       std::int64_t now) const {
+  if (const auto base = check_base(request.base_revision); !base) return tl::unexpected(base.error());
+  auto edit = evaluate(request, T_map_frame, map, resolution_);
+  if (!edit) return edit;
+  const PinnedBricks bricks = by_brick(*edit);
+  if (request.base_revision >= 0 && edits_.changed_since(bricks, request.base_revision)) {
+    return refuse(Code::kStaleRevision, "others changed these voxels since; look at them, then ask again");
+  }
+  const auto free = leases_.check(bricks, request.author, now);
+  if (!free) return tl::unexpected(free.error());
+  return edit;
+}
+
+Result<Correction::Undo> People::check(const UndoRequest& request, std::int64_t now) const {
+  Correction::Undo undo{request.edit_id, request.redo};
+  if (const auto can = edits_.check(undo); !can) return tl::unexpected(can.error());
+  const auto free = leases_.check(edits_.bricks_of(request.edit_id), request.author, now);
+  if (!free) return tl::unexpected(free.error());
+  return undo;
+}
+
+Result<Correction::ZoneChange> People::check(const ZoneRequest& request, const Transform& T_map_frame,
+                                             std::int64_t now) const {
+  const auto it = zones_.find(request.name);
+  const auto can = check_target(request, it != zones_.end() ? &it->second : nullptr, now);
+  if (!can) return tl::unexpected(can.error());
+  Zone zone;
+  zone.name = request.name;
+  if (request.op == ZoneRequest::Op::kDelete) return Correction::ZoneChange{request.op, std::move(zone)};
+  const Eigen::AlignedBox3d bounds = bounds_in_map(request.volume, T_map_frame);
+  const double edge = kMaxVoxel * resolution_;
+  if (bounds.min().minCoeff() < -edge || bounds.max().maxCoeff() > edge) {
+    return refuse(Code::kOutOfBounds, "zone " + request.name + " would lie beyond the map's bounds");
+  }
+  if (const auto free = leases_.check(bounds, request.author, now); !free) return tl::unexpected(free.error());
+  zone.kind = request.kind;
+  zone.volume = request.volume;
+  zone.T_map_zone = T_map_frame;
+  return Correction::ZoneChange{request.op, std::move(zone)};
+}
+
+/// @param zone the one that has this name; null: none.
+Result<void> People::check_target(const ZoneRequest& request, const Zone* zone, std::int64_t now) const {
+  if (request.op == ZoneRequest::Op::kAdd) {
+    if (zone != nullptr) return refuse(Code::kExists, "a zone " + request.name + " exists; choose another name");
+    if (zones_.size() < kMaxZones) return {};
+    return refuse(Code::kTooLarge, "there are " + std::to_string(kMaxZones) + " zones already; delete some");
+  }
+  if (zone == nullptr) return refuse(Code::kNotFound, "no zone " + request.name);
+  if (const auto base = check_base(request.base_revision); !base) return base;
+  if (request.base_revision >= 0 && zone->revision > request.base_revision) {
+    return refuse(Code::kStaleRevision, zone->author + " changed zone " + zone->name + " since; look at it first");
+  }
+  return leases_.check(bounds_in_map(zone->volume, zone->T_map_zone), request.author, now);
+}
+
+Result<void> People::check_base(std::int64_t base_revision) const {
+  if (base_revision <= revision()) return {};
+  return refuse(Code::kBadRequest, "base revision " + std::to_string(base_revision) + " is to come; it is " +
+                                       std::to_string(revision()) + " now");
+}
+
+struct People::Apply {
+  People& people;
+  const Correction& correction;
+  BrickSet& touched;
+
+  void operator()(const Correction::Edit& edit) const {
+    people.edits_.apply(correction.revision, correction.id, by_brick(edit), touched);
+  }
+  void operator()(const Correction::Undo& undo) const { people.edits_.apply(correction.revision, undo, touched); }
+  void operator()(const Correction::ZoneChange& change) const {
+    if (change.op == ZoneRequest::Op::kDelete) {
+      people.zones_.erase(change.zone.name);
+      return;
+    }
+    Zone& zone = people.zones_[change.zone.name];
+    zone = change.zone;
+    zone.author = correction.author;
+    zone.utime = correction.utime;
+    zone.revision = correction.revision;
+  }
+  void operator()(const Correction::Placement& placement) const {
+    people.placements_[placement.agent][{placement.frame_id, placement.incarnation}] = placement;
+  }
+  void operator()(const Correction::Weight& weight) const { people.weights_[weight.agent] = weight.weight; }
+};
+
+void People::apply(const Correction& correction, BrickSet& touched) {
+  assert(correction.revision > revision() && find(correction.id) == nullptr);
+  std::visit(Apply{*this, correction, touched}, correction.what);
+  by_id_[correction.id] = made_.size();
+  made_.push_back({summary(correction, true), correction.content});
+}
+
+const People::Made* People::find(const std::string& id) const {
+  const auto it = by_id_.find(id);
+  return it != by_id_.end() ? &made_[it->second] : nullptr;
+}
+
+std::vector<Operation> People::history(const HistoryRequest& request) const {
+  std::vector<Operation> out;
+  const auto first = std::ranges::upper_bound(made_, request.after_revision, {},
+                                              [](const Made& made) { return made.operation.revision; });
+  for (auto it = first; it != made_.end() && out.size() < static_cast<std::size_t>(request.most); ++it) {
+    if (!matches(it->operation, request)) continue;
+    out.push_back(it->operation);
+    out.back().active = is_active(it->operation);
+  }
+  return out;
+}
+
+bool People::is_active(const Operation& operation) const {
+  return !is_edit(operation.kind) || edits_.is_active(operation.id);
+}
+
+const Transform* People::T_map_agent(const std::string& agent, const std::string& frame_id,
+                                     std::int64_t incarnation) const {
+  const auto it = placements_.find(agent);
+  if (it == placements_.end()) return nullptr;
+  const auto placement = it->second.find({frame_id, incarnation});
+  return placement != it->second.end() ? &placement->second.T_map_agent : nullptr;
+}
+
+std::optional<int> People::weight(const std::string& agent) const {
+  const auto it = weights_.find(agent);
+  return it != weights_.end() ? std::optional(it->second) : std::nullopt;
+}
+
+}  // namespace concord
