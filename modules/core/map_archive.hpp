@@ -71,9 +71,9 @@ class MapArchiveWriter {
 };
 
 struct MapArchiveOptions {
-  std::optional<double> resolution;          ///< the only one that is taken; absent: any
-  std::uint64_t known_voxels = 400'000'000;  ///< of a layer
-  bool keep_bricks = true;                   ///< false: bricks are checked like everything else, and dropped
+  std::optional<double> resolution = std::nullopt;  ///< the only one that is taken; absent: any
+  std::uint64_t known_voxels = 400'000'000;         ///< of a layer
+  bool keep_bricks = true;                          ///< false: bricks are checked like everything else, and dropped
 };
 
 /// Reads and checks a whole file. All of it is good or all of it is refused: damaged, cut short, foreign or of a newer
