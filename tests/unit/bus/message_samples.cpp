@@ -7,9 +7,7 @@ constexpr std::int64_t kTime = 1'700'000'000'123'456;
 
 template <class T>
 Bytes written(const T& value) {
-  if constexpr (std::is_same_v<T, EditRequest>) {
-    return encode(value, kSampleResolution);
-  } else if constexpr (requires { encode(value); }) {
+  if constexpr (requires { encode(value); }) {
     return encode(value);
   } else {
     return encode(value, kTime);
@@ -19,13 +17,7 @@ Bytes written(const T& value) {
 template <class T>
 MessageSample sample(const std::string& type, const T& value) {
   return {type, written(value), [](std::span<const std::uint8_t> bytes) -> Decoded<Bytes> {
-            auto read = [&] {
-              if constexpr (std::is_same_v<T, EditRequest>) {
-                return decode_edit(bytes, kSampleResolution);
-              } else {
-                return decode<T>(bytes);
-              }
-            }();
+            const auto read = decode<T>(bytes);
             if (!read) return tl::unexpected(read.error());
             return written(*read);
           }};
@@ -36,6 +28,23 @@ Transform some_transform() {
   T.linear() = Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitX()).toRotationMatrix();
   T.translation() = Eigen::Vector3d(1, -2, 3);
   return T;
+}
+
+EditRequest edit(EditRequest::Op op, Shape shape) {
+  return {"e-1", "Zoë", op, std::move(shape), {"headset", "h-1"}, Eigen::Vector3d::Zero(), 17, kTime};
+}
+
+EditRequest moved(EditRequest edit) {
+  edit.move = {0.5, -1, 2};
+  return edit;
+}
+
+const Box kBox{{-1, 0, 0}, {1, 2.5, 3}};
+const OrientedBox kOriented{some_transform(), {1, 2, 3}};
+const Prism kPrism{{{0, 0}, {4, 0}, {4, 3}, {1, 1}}, -0.5, 2};
+
+Zone zone(const std::string& name, Volume volume) {
+  return {name, Zone::Kind::kAllowContact, std::move(volume), some_transform(), "Zoë", kTime, 5};
 }
 
 }  // namespace
@@ -49,13 +58,55 @@ const std::vector<MessageSample>& message_samples() {
       sample("cloud_t", CloudMessage{kTime, 17, 5, "odom", some_transform(), 12.5, {{1, 2, 3}, {-4, 5.5F, 6}}}),
       sample("agent_pose_t", AgentPose{"", "odom", some_transform(), kTime}),
       sample("frame_over_t", FrameOver{kTime, "odom"}),
-      sample("frame_over_t", FrameOver{kTime, "odom"}),
       sample("map_pose_t", MapPose{kTime, "robot1", some_transform()}),
       sample("set_transform_t", TransformRequest{"r-1", "Zoë", "robot1", "odom", some_transform()}),
-      sample("edit_t", EditRequest{"e-1", "Zoë", EditRequest::Op::kDelete, {{-1, 0, 0}, {0, 0, 0}, {5, 6, 7}}, kTime}),
+      sample("edit_t",
+             edit(EditRequest::Op::kDelete, VoxelList{0.05, {{{-1, 0, 0}, {0, 0, 0}}, {{5, 6, 7}, {6, 9, 7}}}})),
+      sample("edit_t", edit(EditRequest::Op::kAdd, Line{{{0, 0, 0}, {1, 1, 1}, {2, 0, 0}}, 0.2})),
+      sample("edit_t", edit(EditRequest::Op::kDelete, Area{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}, 0.1})),
+      sample("edit_t", moved(edit(EditRequest::Op::kMove, kBox))),
+      sample("edit_t", edit(EditRequest::Op::kAdd, kOriented)),
+      sample("edit_t", edit(EditRequest::Op::kAdd, kPrism)),
+      sample("undo_t", UndoRequest{"u-1", "Zoë", "e-1", true, kTime}),
+      sample("zone_request_t", ZoneRequest{"z-1",
+                                           "Zoë",
+                                           ZoneRequest::Op::kChange,
+                                           "Line 3 €",
+                                           Zone::Kind::kNoGo,
+                                           kPrism,
+                                           {"headset", ""},
+                                           4,
+                                           kTime}),
+      sample("zone_request_t",
+             ZoneRequest{"z-2", "", ZoneRequest::Op::kDelete, "dock", Zone::Kind::kNoGo, {}, {}, kAnyRevision, kTime}),
+      sample("lease_request_t", LeaseRequest{"l-1", "Zoë", true, kOriented, {}, kTime}),
+      sample("lease_request_t", LeaseRequest{"l-1", "Zoë", false, {}, {}, kTime}),
+      sample("weight_request_t", WeightRequest{"w-1", "Zoë", "robot1", 1000, kTime}),
+      sample("localise_request_t",
+             LocaliseRequest{"p-1", "Zoë", "robot1", some_transform(), {"headset", "h-1"}, kTime}),
+      sample("history_request_t", HistoryRequest{"h-1", "Zoë", "dock", Operation::Kind::kZoneAdd, 1, kTime, 5, 10'000}),
+      sample("history_t",
+             HistoryPart{"h-1",
+                         1,
+                         2,
+                         {{7, "e-1", "Zoë", kTime, Operation::Kind::kMove, "", 12, false, {-5, 0, 1}, {5, 0, 1}},
+                          {8, "w-1", "", kTime, Operation::Kind::kWeight, "robot1", 0, true, {}, {}}}}),
+      sample("conflict_request_t", ConflictRequest{"c-1", 7}),
+      sample("conflict_list_t", ConflictList{"c-1",
+                                             0,
+                                             3,
+                                             70,
+                                             900,
+                                             {{{0, 0, 0}, {3, 4, 5}, 20, {{"robot1", 15, 5}, {"robot2", 0, 20}}},
+                                              {{-9, -9, -9}, {-8, -8, -8}, 1, {}}}}),
+      sample("zones_t", ListPart<Zone>{0xFFEEDDCCBBAA9988, 1, 2, {zone("a", kBox), zone("b", kPrism)}, {}}),
+      sample("leases_t", ListPart<Lease>{5, 0, 1, {{"l-1", "Zoë", kOriented, some_transform(), kTime}}, {}}),
+      sample("list_digest_t", ListDigest{0xFFEEDDCCBBAA9988, 3}),
+      sample("list_request_t", ListRequest{0xFFEEDDCCBBAA9988}),
       sample("agent_request_t", AgentRequest{"r-2", "robot1", AgentRequest::Op::kRemove}),
       sample("downsample_request_t", DownsampleRequest{"r-3", "robot1", 0.5}),
       sample("downsampled_t", Downsampled{"r-3", "robot1", "odom", 0.5, 1, 2, {{1, 2, 3}}}),
+      sample("map_request_t", MapRequest{"r-4", MapRequest::Op::kLoad, "hall", "concord", false, "robot1"}),
       sample("map_request_t", MapRequest{"r-4", MapRequest::Op::kSave, "hall", "bt", true, ""}),
       sample("map_list_t", MapList{"r-5", {{"a.bt", 100}, {"b.ot", 1LL << 40}}}),
       sample("path_request_t", PathRequest{"r-6", "robot1", Eigen::Vector2d(1, 2), {3, 4}, 0.4, true}),

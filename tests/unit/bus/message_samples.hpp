@@ -8,7 +8,7 @@
 
 namespace concord::test {
 
-/// One good message of each type, and how it is read.
+/// A good message, and how its type is read.
 struct MessageSample {
   std::string type;
   Bytes bytes;
@@ -16,8 +16,7 @@ struct MessageSample {
   std::function<Decoded<Bytes>(std::span<const std::uint8_t>)> reread;
 };
 
-inline constexpr double kSampleResolution = 0.05;
-
+/// At least one of each type.
 [[nodiscard]] const std::vector<MessageSample>& message_samples();
 
 }  // namespace concord::test

@@ -6,19 +6,17 @@
 
 #include "allocation_count.hpp"
 #include "bus/lockstep_bus.hpp"
+#include "message_checks.hpp"
 #include "message_samples.hpp"
 
 namespace concord::test {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
 /// Reads whatever it is; taking far more memory than came in is a failure.
 Decoded<Bytes> read_within_bounds(const MessageSample& sample, const Bytes& bytes) {
   const std::size_t before = bytes_allocated();
   Decoded<Bytes> read = sample.reread(bytes);
-  const std::size_t expanded = sample.type == "edit_t" ? 3 * 12 * 1'000'000 : 0;  // at most 1 million voxels
-  EXPECT_LE(bytes_allocated() - before, 8192 + 40 * bytes.size() + expanded) << sample.type;
+  EXPECT_LE(bytes_allocated() - before, 8192 + 40 * bytes.size()) << sample.type;
   return read;
 }
 
@@ -78,29 +76,6 @@ RC_GTEST_PROP(MessagesProperty, damaged_bytes_are_read_whole_or_refused, ()) {
   if (read) RC_ASSERT(sample.reread(*read).has_value());
 }
 
-RC_GTEST_PROP(MessagesProperty, edits_of_any_voxels_come_back, ()) {
-  const auto coordinate = rc::gen::inRange(-40, 40);
-  auto voxels = *rc::gen::nonEmpty(rc::gen::container<std::vector<VoxelIndex>>(rc::gen::apply(
-      [](int x, int y, int z) {
-        return VoxelIndex{x, y, z};
-      },
-      coordinate, coordinate, coordinate)));
-  std::sort(voxels.begin(), voxels.end());
-  voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
-  const EditRequest edit{"e", "me", EditRequest::Op::kAdd, voxels, 5};
-  const auto read = decode_edit(encode(edit, 0.1), 0.1);
-  RC_ASSERT(read.has_value());
-  RC_ASSERT(read->voxels == voxels);
-}
-
-/// Expects a refusal with this code that reaches the asker.
-template <class T>
-void expect_refused(const Decoded<T>& read, Code code, const std::string& id) {
-  ASSERT_FALSE(read);
-  EXPECT_EQ(name(read.error().error.code), std::string(name(code)));
-  EXPECT_EQ(read.error().id, id);
-}
-
 TEST(Messages, bad_transforms_are_refused_to_their_asker) {
   TransformRequest request{"r", "me", "robot1", "", Transform::Identity()};
   request.T_map_agent.translation().x() = kNaN;
@@ -151,16 +126,6 @@ TEST(Messages, long_texts_for_people_are_cut_between_characters) {
   EXPECT_EQ(read->message, message.substr(0, 400));
 }
 
-TEST(Messages, edits_are_checked) {
-  EditRequest edit{"e", "me", EditRequest::Op::kAdd, {{0, 0, 0}}, 5};
-  expect_refused(decode_edit(encode(edit, 0.1), 0.05), Code::kBadResolution, "e");
-  expect_refused(decode_edit(encode(edit, kNaN), 0.05), Code::kBadResolution, "e");
-  edit.voxels = {{kMaxVoxel, 0, 0}};
-  expect_refused(decode_edit(encode(edit, 0.1), 0.1), Code::kOutOfBounds, "e");
-  edit.voxels.clear();
-  expect_refused(decode_edit(encode(edit, 0.1), 0.1), Code::kEmpty, "e");
-}
-
 TEST(Messages, paths_are_checked) {
   PathRequest request{"r", "robot1", std::nullopt, {kNaN, 0}, 0.4, true};
   expect_refused(decode<PathRequest>(encode(request, 1)), Code::kNotFinite, "r");
@@ -186,6 +151,9 @@ TEST(Messages, map_requests_are_checked) {
   expect_refused(decode<MapRequest>(encode(request, 1)), Code::kBadRequest, "r");
   request.format = "";
   expect_refused(decode<MapRequest>(encode(request, 1)), Code::kBadRequest, "r");
+  request.format = "concord";
+  EXPECT_TRUE(decode<MapRequest>(encode(request, 1)));
+  request.format = "";
   request.op = MapRequest::Op::kLoad;
   EXPECT_TRUE(decode<MapRequest>(encode(request, 1)));
   request.agent = "no agent";

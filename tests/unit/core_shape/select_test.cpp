@@ -130,8 +130,21 @@ TEST(SelectArea, FollowsPointsThatAreNotQuiteInAPlane) {
 TEST(SelectVoxels, AreTheMapsOwnWhereverTheFrameIs) {
   Transform elsewhere = kHere;
   elsewhere.translation() = Eigen::Vector3d(5, 5, 5);
-  const VoxelList list{{{{0, 0, 0}, {1, 1, 1}}, {{1, 1, 1}, {2, 2, 2}}}};
+  const VoxelList list{0.05, {{{0, 0, 0}, {1, 1, 1}}, {{1, 1, 1}, {2, 2, 2}}}};
   EXPECT_EQ(select(list, elsewhere, 0.05, 16)->size(), 15U);
+}
+
+TEST(SelectVoxels, AreRefusedInALatticeOfAnotherResolution) {
+  VoxelList list{0.1, {{{0, 0, 0}, {1, 1, 1}}}};
+  EXPECT_EQ(refusal(list, kHere, 0.05), Code::kBadResolution);
+  EXPECT_EQ(refusal(list, kHere, 0.1 + 1e-6), Code::kBadResolution);
+  EXPECT_EQ(select(list, kHere, 0.1, 8)->size(), 8U);
+  list.resolution = 0;
+  EXPECT_EQ(refusal(list), Code::kBadResolution);
+  list.resolution = -0.05;
+  EXPECT_EQ(refusal(list), Code::kBadResolution);
+  list.resolution = std::nan("");
+  EXPECT_EQ(refusal(list), Code::kNotFinite);
 }
 
 TEST(Select, CountsEachVoxelOnceAgainstTheLimit) {
@@ -173,13 +186,13 @@ TEST(Select, RefusesWhatReachesBeyondTheLattice) {
   Transform away = kHere;
   away.translation().x() = 1e300;
   EXPECT_EQ(refusal(Box{{0, 0, 0}, {1, 1, 1}}, away), Code::kOutOfBounds);
-  EXPECT_EQ(refusal(VoxelList{{{{0, 0, 0}, {0, 0, kMaxVoxel}}}}), Code::kOutOfBounds);
+  EXPECT_EQ(refusal(VoxelList{0.05, {{{0, 0, 0}, {0, 0, kMaxVoxel}}}}), Code::kOutOfBounds);
 }
 
 TEST(Select, RefusesWhatIsNoShape) {
   const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(refusal(VoxelList{}), Code::kEmpty);
-  EXPECT_EQ(refusal(VoxelList{{{{1, 0, 0}, {0, 0, 0}}}}), Code::kBadShape);
+  EXPECT_EQ(refusal(VoxelList{0.05, {}}), Code::kEmpty);
+  EXPECT_EQ(refusal(VoxelList{0.05, {{{1, 0, 0}, {0, 0, 0}}}}), Code::kBadShape);
   EXPECT_EQ(refusal(Line{}), Code::kBadShape);
   EXPECT_EQ(refusal(Line{{{0, 0, 0}}, 0}), Code::kBadShape);
   EXPECT_EQ(refusal(Line{{{0, 0, 0}, {0, nan, 0}}, 0}), Code::kNotFinite);
