@@ -8,8 +8,6 @@
 namespace concord {
 namespace {
 
-constexpr std::size_t kPartBytes = 1200;
-constexpr std::size_t kMostInPart = 64;
 constexpr std::int64_t kSendStep = 5'000;
 constexpr std::int64_t kAskStep = 10'000;
 constexpr std::int64_t kDigestPeriod = 1'000'000;
@@ -20,10 +18,13 @@ constexpr std::int64_t kMostBackOff = 30'000;
 /// What the wire adds to a part's items, for the pace.
 constexpr double kOverheadBytes = 100;
 
-/// The items of a part as they stand in its message.
+/// An item as it stands in a part's message: behind what one without items is.
 template <class T>
-Bytes on_the_wire(const std::vector<T>& items) {
-  return decode<ListPart<T>>(encode(ListPart<T>{0, 0, 1, items, {}}, 0))->encoded;
+Bytes on_the_wire(const T& item) {
+  Bytes bytes = encode(ListPart<T>{0, 0, 1, {item}, {}}, 0);
+  const std::size_t before = encode(ListPart<T>{}, 0).size();
+  bytes.erase(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(before));
+  return bytes;
 }
 
 /// Of the items' bytes, one part after the other: the same however they are divided.
@@ -65,7 +66,7 @@ void ListSender<T>::set(const std::vector<T>& items) {
   ContentHash hash;
   std::size_t size = kPartBytes;
   for (const T& item : items) {
-    const Bytes bytes = on_the_wire<T>({item});
+    const Bytes bytes = on_the_wire(item);
     hash.add(bytes);
     if (size + bytes.size() > kPartBytes || parts.back().size() >= kMostInPart) {
       parts.emplace_back();

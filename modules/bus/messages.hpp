@@ -102,6 +102,10 @@ struct ProcessStatus {
   std::map<std::string, std::int64_t> counters;
 };
 
+/// What is sent in parts: bytes of items in one, unless one item alone is more, so that a frame on the wire holds it.
+inline constexpr std::size_t kPartBytes = 1200;
+inline constexpr std::size_t kMostInPart = 64;
+
 /// A part of the answer to a HistoryRequest.
 struct HistoryPart {
   std::string id;  ///< the request's

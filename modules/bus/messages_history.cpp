@@ -13,7 +13,6 @@ namespace {
 using wire::bad;
 using Kind = Operation::Kind;
 
-constexpr std::int64_t kMaxItemsInPart = 64;
 constexpr std::int64_t kMaxParts = 10'000;
 constexpr std::int64_t kMaxClaims = 1024;
 constexpr int kMostOperations = 10'000;
@@ -124,7 +123,8 @@ conflict_region_t to_wire(const ConflictRegion& region) {
 
 Decoded<ConflictRegion> from_wire(const conflict_region_t& in) {
   if (auto fine = check_bounds(in); !fine) return bad(fine.error());
-  if (in.voxels < 1 || in.voxels > kMaxVoxelsOfRegion) return bad(Code::kMalformed, "a tile of the map has fewer voxels than this region");
+  if (in.voxels < 1 || in.voxels > kMaxVoxelsOfRegion)
+    return bad(Code::kMalformed, "a tile of the map has fewer voxels than this region");
   ConflictRegion out{voxel(in.min), voxel(in.max), in.voxels, {}};
   for (const claim_t& claim : in.claims) {
     if (!is_name(claim.agent)) return bad(Code::kBadName, wire::kBadAgent);
@@ -173,7 +173,7 @@ std::vector<Part> divide(Part whole, Items Part::*items) {
   std::size_t size = 0;
   for (const auto& item : all) {
     const auto more = static_cast<std::size_t>(to_wire(item).getEncodedSize());
-    const bool fits = size + more <= wire::kPartBytes && (parts.back().*items).size() < kMaxItemsInPart;
+    const bool fits = size + more <= kPartBytes && (parts.back().*items).size() < kMostInPart;
     if (!(parts.back().*items).empty() && !fits) {
       parts.push_back(whole);
       size = 0;
@@ -234,7 +234,7 @@ template <>
 Decoded<HistoryPart> decode<HistoryPart>(std::span<const std::uint8_t> bytes) {
   static constexpr WireField kOperation[] = {fixed(8),     text(wire::kIdLength), text(wire::kIdLength),
                                              fixed(8 + 1), text(wire::kIdLength), fixed(8 + 1 + 24)};
-  static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength), fixed(4 + 4), count(kMaxItemsInPart),
+  static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength), fixed(4 + 4), count(kMostInPart),
                                           records(kOperation)};
   const auto in = wire::from_bytes<history_t>(bytes, kLayout);
   if (!in) return bad(in.error());
@@ -271,7 +271,7 @@ template <>
 Decoded<ConflictList> decode<ConflictList>(std::span<const std::uint8_t> bytes) {
   static constexpr WireField kClaim[] = {text(wire::kNameLength), fixed(4 + 4)};
   static constexpr WireField kRegion[] = {fixed(24 + 4), count(kMaxClaims), records(kClaim)};
-  static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength), fixed(4 + 4 + 8 + 8), count(kMaxItemsInPart),
+  static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength), fixed(4 + 4 + 8 + 8), count(kMostInPart),
                                           records(kRegion)};
   const auto in = wire::from_bytes<conflict_list_t>(bytes, kLayout);
   if (!in) return bad(in.error());

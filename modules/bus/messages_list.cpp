@@ -14,7 +14,6 @@ using wire::bad;
 
 /// Of any list: as many as the longest may have items.
 constexpr std::int64_t kMaxParts = kMaxZones;
-constexpr std::int64_t kMaxItemsInPart = 64;
 /// Fingerprint, utime, content, part, parts, count.
 constexpr std::size_t kBeforeItems = 8 + 8 + 8 + 4 + 4 + 4;
 
@@ -90,7 +89,7 @@ Bytes write(const ListPart<T>& value, std::int64_t utime) {
 
 template <class Lcm, class T>
 Decoded<ListPart<T>> read(std::span<const std::uint8_t> bytes, std::span<const WireField> item) {
-  const WireField layout[] = {fixed(8 + 8 + 4 + 4), count(kMaxItemsInPart), records(item)};
+  const WireField layout[] = {fixed(8 + 8 + 4 + 4), count(kMostInPart), records(item)};
   auto in = wire::from_bytes<Lcm>(bytes, layout);
   if (!in) return bad(in.error());
   if (auto fine = wire::check_part(in->part, in->parts, kMaxParts); !fine) return bad(fine.error());

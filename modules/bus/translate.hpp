@@ -129,9 +129,6 @@ template <class Points>
   return refuse(Code::kBadRequest, std::string(what) + " must not be negative");
 }
 
-/// Of what is sent in parts; a frame of 1500 bytes holds it and what goes before it.
-inline constexpr std::size_t kPartBytes = 1200;
-
 [[nodiscard]] inline Result<void> check_part(std::int32_t part, std::int32_t parts, std::int64_t most) {
   if (part < 0 || parts < 1 || part >= parts) return refuse(Code::kMalformed, "part is not one of parts");
   if (parts > most) return refuse(Code::kTooLarge, "has over " + std::to_string(most) + " parts");
