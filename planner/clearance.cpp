@@ -56,11 +56,23 @@ double distance(const Segment& s, const Square& q) {
   return least;
 }
 
+/// What a distance is taken to.
+struct Blocked {
+  const Grid& grid;
+  const ZoneLayer& zones;
+  Against against;
+
+  [[nodiscard]] std::uint64_t plane(BrickIndex column) const {
+    const Ground there = ground(grid, zones, column);
+    return ~(against == Against::kImpassable ? there.passable : there.touchable);
+  }
+};
+
 /// The least of `least` and the distances from the segment to the blocked cells of one column of bricks.
-double nearest_in(const Grid& grid, BrickIndex column, const Segment& s, double least) {
+double nearest_in(const Blocked& blocked, BrickIndex column, const Segment& s, double least) {
   const Eigen::Vector2d low(8.0 * column.x, 8.0 * column.y);
   if (distance(s, Square{low, 8}) >= least) return least;
-  for (std::uint64_t bits = ~free_plane(grid.cells().find(column)); bits != 0; bits &= bits - 1) {
+  for (std::uint64_t bits = blocked.plane(column); bits != 0; bits &= bits - 1) {
     const int local = std::countr_zero(bits);
     least = std::min(least, distance(s, Square{low + Eigen::Vector2d(local & 7, local >> 3), 1}));
   }
@@ -78,7 +90,7 @@ Segment slice(const Segment& s, double low, double high) {
 
 std::int32_t brick_coordinate(double cells) { return static_cast<std::int32_t>(std::floor(cells / 8)); }
 
-double nearest_along(const Grid& grid, const Segment& s, double least) {
+double nearest_along(const Blocked& blocked, const Segment& s, double least) {
   const double reach = least + 1e-6;
   const std::int32_t first = brick_coordinate(std::min(s.a.y(), s.b.y()) - reach);
   const std::int32_t last = brick_coordinate(std::max(s.a.y(), s.b.y()) + reach);
@@ -86,32 +98,37 @@ double nearest_along(const Grid& grid, const Segment& s, double least) {
     const Segment near = slice(s, 8.0 * y - reach, 8.0 * (y + 1) + reach);
     const std::int32_t left = brick_coordinate(std::min(near.a.x(), near.b.x()) - reach);
     const std::int32_t right = brick_coordinate(std::max(near.a.x(), near.b.x()) + reach);
-    for (std::int32_t x = left; x <= right && least > 0; ++x) least = nearest_in(grid, {x, y, 0}, s, least);
+    for (std::int32_t x = left; x <= right && least > 0; ++x) least = nearest_in(blocked, {x, y, 0}, s, least);
   }
   return least;
 }
 
 /// The distance to the nearest blocked cell if it is less than `reach`. Both in cells: a length that went to metres and
 /// back is another number than before.
-std::optional<double> nearest(const Grid& grid, std::span<const Eigen::Vector2d> points, double reach) {
+std::optional<double> nearest(const Blocked& blocked, std::span<const Eigen::Vector2d> points, double reach) {
+  const double resolution = blocked.grid.resolution();
   double least = reach;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector2d& next = points[std::min(i + 1, points.size() - 1)];
-    least = nearest_along(grid, {points[i] / grid.resolution(), next / grid.resolution()}, least);
+    least = nearest_along(blocked, {points[i] / resolution, next / resolution}, least);
   }
   return least < reach ? std::optional(least) : std::nullopt;
 }
 
 }  // namespace
 
-std::optional<double> clearance(const Grid& grid, std::span<const Eigen::Vector2d> points, double reach) {
-  const std::optional<double> cells = nearest(grid, points, reach / grid.resolution());
+std::optional<double> clearance(const Grid& grid, std::span<const Eigen::Vector2d> points, double reach,
+                                const ZoneLayer& zones, Against against) {
+  const std::optional<double> cells = nearest({grid, zones, against}, points, reach / grid.resolution());
   return cells ? std::optional(*cells * grid.resolution()) : std::nullopt;
 }
 
-bool is_clear(const Grid& grid, std::span<const Eigen::Vector2d> points, double radius) {
+bool is_clear(const Grid& grid, std::span<const Eigen::Vector2d> points, double radius, const ZoneLayer& zones) {
+  constexpr double kLine = 5e-7;
   // Two millionths of a cell are left for rounding: the search allows one (kTouch).
-  return !nearest(grid, points, std::max(radius / grid.resolution() - 2e-6, 5e-7));
+  const double disc = std::max(radius / grid.resolution() - 2e-6, kLine);
+  if (nearest({grid, zones, Against::kUntouchable}, points, disc)) return false;
+  return !zones.has_contact() || !nearest({grid, zones, Against::kImpassable}, points, kLine);
 }
 
 }  // namespace concord

@@ -6,16 +6,25 @@
 #include <Eigen/Core>
 
 #include "planner/grid.hpp"
+#include "planner/zone_layer.hpp"
 
 namespace concord {
 
-/// The validator: the least distance of a polyline (map frame, metres) to any blocked cell, that is to the closed
-/// square of a cell that is not free; 0 if it enters or touches one. Nothing where no cell is nearer than `reach`.
-/// Shares no code with the search: plain geometry on the grid's own cells.
-[[nodiscard]] std::optional<double> clearance(const Grid& grid, std::span<const Eigen::Vector2d> points, double reach);
+/// The validator: plain geometry on the cells' closed squares (`Ground`); shares no code with the search.
+enum class Against {
+  kImpassable,   ///< cells that are not free, or in a no-go zone
+  kUntouchable,  ///< of these, the ones that no allow-contact zone holds or a no-go zone does
+};
 
-/// Whether a robot of `radius` metres may follow the polyline: its disc overlaps no blocked cell anywhere on the way,
-/// and the line itself touches none.
-[[nodiscard]] bool is_clear(const Grid& grid, std::span<const Eigen::Vector2d> points, double radius);
+/// The least distance of a polyline (map frame, metres) to such cells; 0 if it enters or touches one. Nothing where
+/// none is nearer than `reach`.
+[[nodiscard]] std::optional<double> clearance(const Grid& grid, std::span<const Eigen::Vector2d> points, double reach,
+                                              const ZoneLayer& zones = no_zones(),
+                                              Against against = Against::kImpassable);
+
+/// Whether a robot of `radius` metres may follow the polyline: its disc overlaps no untouchable cell anywhere on the
+/// way, and the line itself touches no impassable one.
+[[nodiscard]] bool is_clear(const Grid& grid, std::span<const Eigen::Vector2d> points, double radius,
+                            const ZoneLayer& zones = no_zones());
 
 }  // namespace concord

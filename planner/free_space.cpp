@@ -38,7 +38,8 @@ double rightmost_in(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double r
 
 }  // namespace
 
-FreeSpace::FreeSpace(const Grid& grid, double radius) : grid_(grid), radius_(std::max(radius - kTouch, kTouch)) {
+FreeSpace::FreeSpace(const Grid& grid, double radius, const ZoneLayer& zones, NoGo no_go)
+    : grid_(grid), zones_(zones), no_go_(no_go), radius_(std::max(radius - kTouch, kTouch)) {
   assert(std::isfinite(radius) && radius >= 0);
   // From a cell's centre to a cell d columns away there are d - 1/2 cells, to its own column none. In half cells:
   const auto gap = [](std::int64_t d) { return d == 0 ? std::int64_t{0} : (2 * d - 1) * (2 * d - 1); };
@@ -51,26 +52,34 @@ FreeSpace::FreeSpace(const Grid& grid, double radius) : grid_(grid), radius_(std
   reach_ = static_cast<int>(widths_.size()) - 1;
 }
 
-const FreeSpace::Rows& FreeSpace::free_rows(Cell tile) {
-  if (last_rows_ != nullptr && tile == last_tile_) return *last_rows_;
-  auto [it, is_new] = free_.try_emplace(tile);
+Ground FreeSpace::ground_at(BrickIndex column) {
+  const Ground there = ground(grid_, zones_, column);
+  met_no_go_ |= there.passable != there.free;
+  if (no_go_ == NoGo::kHeeded) return there;
+  return {there.free, there.free, there.free | zones_.contact(column)};
+}
+
+const FreeSpace::Rows& FreeSpace::rows(Layer& layer, Cell tile) {
+  if (layer.last_rows != nullptr && tile == layer.last_tile) return *layer.last_rows;
+  auto [it, is_new] = layer.tiles.try_emplace(tile);
   if (is_new) {
     auto rows = std::make_unique<Rows>();
     rows->fill(0);
     for (int by = 0; by < 8; ++by) {
       for (int bx = 0; bx < 8; ++bx) {
-        const std::uint64_t plane = free_plane(grid_.cells().find(BrickIndex{tile.x * 8 + bx, tile.y * 8 + by, 0}));
+        const std::uint64_t plane = ground_at({tile.x * 8 + bx, tile.y * 8 + by, 0}).*layer.plane;
         for (int y = 0; y < 8; ++y) (*rows)[by * 8 + y] |= (plane >> (8 * y) & 0xFF) << (8 * bx);
       }
     }
     it->second = std::move(rows);
   }
-  last_tile_ = tile;
-  last_rows_ = it->second.get();
-  return *last_rows_;
+  layer.last_tile = tile;
+  layer.last_rows = it->second.get();
+  return *layer.last_rows;
 }
 
-/// The blocked cells that have a free neighbour, over a corner too: the nearest blocked cell to any free point is one.
+/// The cells that are not touchable but have such a neighbour, over a corner too: the nearest one to any touchable
+/// point is one of them.
 const FreeSpace::Rows& FreeSpace::edge_rows(Cell tile) {
   auto [it, is_new] = edges_.try_emplace(tile);
   if (!is_new) return *it->second;
@@ -78,14 +87,14 @@ const FreeSpace::Rows& FreeSpace::edge_rows(Cell tile) {
   std::array<std::uint64_t, kSide + 2> spread;
   for (int y = -1; y <= kSide; ++y) {
     const std::int32_t tile_y = tile.y + (y < 0 ? -1 : y / kSide);
-    const std::uint64_t row = free_rows({tile.x, tile_y})[y & 63];
-    const std::uint64_t left = free_rows({tile.x - 1, tile_y})[y & 63];
-    const std::uint64_t right = free_rows({tile.x + 1, tile_y})[y & 63];
+    const std::uint64_t row = rows(touchable_, {tile.x, tile_y})[y & 63];
+    const std::uint64_t left = rows(touchable_, {tile.x - 1, tile_y})[y & 63];
+    const std::uint64_t right = rows(touchable_, {tile.x + 1, tile_y})[y & 63];
     spread[y + 1] = row | row << 1 | row >> 1 | left >> 63 | right << 63;
   }
-  const Rows& free = free_rows(tile);
+  const Rows& touchable = rows(touchable_, tile);
   auto rows = std::make_unique<Rows>();
-  for (int y = 0; y < kSide; ++y) (*rows)[y] = (spread[y] | spread[y + 1] | spread[y + 2]) & ~free[y];
+  for (int y = 0; y < kSide; ++y) (*rows)[y] = (spread[y] | spread[y + 1] | spread[y + 2]) & ~touchable[y];
   it->second = std::move(rows);
   return *it->second;
 }
@@ -112,7 +121,7 @@ void FreeSpace::carve(Rows& open, const Rows& edges, int dx, int dy) const {
 const FreeSpace::Rows& FreeSpace::open_rows(Cell tile) {
   auto [it, is_new] = open_.try_emplace(tile);
   if (!is_new) return *it->second;
-  auto open = std::make_unique<Rows>(free_rows(tile));
+  auto open = std::make_unique<Rows>(rows(zones_.has_contact() ? passable_ : touchable_, tile));
   if (std::any_of(open->begin(), open->end(), [](std::uint64_t row) { return row != 0; })) {
     const int tiles = (reach_ + kSide - 1) / kSide;
     for (int dy = -tiles; dy <= tiles; ++dy) {
@@ -125,29 +134,34 @@ const FreeSpace::Rows& FreeSpace::open_rows(Cell tile) {
 
 bool FreeSpace::is_open(Cell cell) { return (open_rows(tile_of(cell))[cell.y & 63] >> (cell.x & 63) & 1) != 0; }
 
-bool FreeSpace::row_is_free(std::int32_t y, std::int32_t first, std::int32_t last) {
+bool FreeSpace::has_row(Layer& layer, std::int32_t y, std::int32_t first, std::int32_t last) {
   for (std::int32_t tile_x = first >> 6; tile_x <= last >> 6; ++tile_x) {
     const std::uint64_t wanted = span_mask(first - tile_x * kSide, last - tile_x * kSide);
-    if ((free_rows({tile_x, y >> 6})[y & 63] & wanted) != wanted) return false;
+    if ((rows(layer, {tile_x, y >> 6})[y & 63] & wanted) != wanted) return false;
   }
   return true;
 }
 
 bool FreeSpace::sees(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
+  return covers(touchable_, from, to, radius_) && (!zones_.has_contact() || covers(passable_, from, to, kTouch));
+}
+
+/// Whether all cells that a disc touches on its way are in the layer.
+bool FreeSpace::covers(Layer& layer, const Eigen::Vector2d& from, const Eigen::Vector2d& to, double radius) {
   const double low = std::min(from.y(), to.y());
   const double high = std::max(from.y(), to.y());
   const Eigen::Vector2d from_mirrored(-from.x(), from.y());
   const Eigen::Vector2d to_mirrored(-to.x(), to.y());
   // Cells are closed squares here: a row is concerned when the disc touches [y, y + 1].
-  const auto first_row = static_cast<std::int32_t>(std::ceil(low - radius_)) - 1;
-  const auto last_row = static_cast<std::int32_t>(std::floor(high + radius_));
+  const auto first_row = static_cast<std::int32_t>(std::ceil(low - radius)) - 1;
+  const auto last_row = static_cast<std::int32_t>(std::floor(high + radius));
   for (std::int32_t y = first_row; y <= last_row; ++y) {
-    const double right = rightmost_in(from, to, radius_, y);
-    const double left = -rightmost_in(from_mirrored, to_mirrored, radius_, y);
+    const double right = rightmost_in(from, to, radius, y);
+    const double left = -rightmost_in(from_mirrored, to_mirrored, radius, y);
     if (left > right) continue;  // the strip is missed by a rounding error
     const auto first = static_cast<std::int32_t>(std::ceil(left)) - 1;
     const auto last = static_cast<std::int32_t>(std::floor(right));
-    if (!row_is_free(y, first, last)) return false;
+    if (!has_row(layer, y, first, last)) return false;
   }
   return true;
 }

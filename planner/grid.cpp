@@ -98,7 +98,7 @@ Result<Band> make_band(double zmin, double zmax, double resolution) {
     while ((z + 0.5) * resolution < height) ++z;
     return z;
   };
-  const Band band{first_from(zmin), first_from(zmax), zmin};
+  const Band band{first_from(zmin), first_from(zmax), zmin, zmax};
   if (band.height() <= 0) {
     return refuse(Code::kEmpty, "the height band holds no voxel centre: zmax must be above zmin by a voxel or more");
   }

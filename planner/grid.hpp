@@ -23,7 +23,8 @@ struct CellHash {
 /// The voxels whose centre lies in [zmin, zmax): those with first <= z < last.
 struct Band {
   std::int32_t first = 0, last = 1;
-  double floor = 0.0;  ///< zmin, metres
+  double floor = 0.0;    ///< zmin, metres
+  double ceiling = 0.0;  ///< zmax, metres
 
   [[nodiscard]] std::int32_t height() const { return last - first; }
 };

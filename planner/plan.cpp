@@ -9,6 +9,7 @@
 
 #include "planner/clearance.hpp"
 #include "planner/free_space.hpp"
+#include "planner/route.hpp"
 #include "planner/search.hpp"
 
 namespace concord {
@@ -38,9 +39,7 @@ std::string describe(const char* what, const Eigen::Vector2d& p) {
   return text.data();
 }
 
-Cell cell_of(const Eigen::Vector2d& p_cells) {
-  return {static_cast<std::int32_t>(std::floor(p_cells.x())), static_cast<std::int32_t>(std::floor(p_cells.y()))};
-}
+std::string no_go(const std::string& zone) { return "the no-go zone '" + zone + "'"; }
 
 /// Whether the cell lies in the smallest rectangle of 8 x 8 columns that holds all known cells.
 bool is_inside(const Grid& grid, Cell cell) {
@@ -58,14 +57,15 @@ bool is_inside(const Grid& grid, Cell cell) {
 struct End {
   const char* what;
   Eigen::Vector2d position;  ///< metres
-  Reason outside, occupied, unknown, clearance;
+  Reason outside, no_go, occupied, unknown, clearance;
 };
 
-std::optional<PlanResult> check_cell(const Grid& grid, const End& end) {
+std::optional<PlanResult> check_cell(const Grid& grid, const ZoneLayer& zones, const End& end) {
   const Eigen::Vector2d p_cells = end.position / grid.resolution();
   const std::string where = describe(end.what, end.position);
   if (p_cells.cwiseAbs().maxCoeff() >= kMaxVoxel) return refusal(end.outside, where + " lies outside the map");
   const Cell cell = cell_of(p_cells);
+  if (const std::string* zone = zones.no_go_at(cell)) return refusal(end.no_go, where + " lies in " + no_go(*zone));
   const LogOdds state = grid.at(cell);
   if (is_free(state)) return std::nullopt;
   if (is_known(state)) return refusal(end.occupied, where + " is occupied");
@@ -73,103 +73,93 @@ std::optional<PlanResult> check_cell(const Grid& grid, const End& end) {
   return refusal(end.outside, where + " lies outside the map");
 }
 
-std::int64_t cost_of(double cells) { return std::llround(cells * static_cast<double>(kStraight)); }
+/// What is planned on, and for whom.
+struct Task {
+  const Grid& grid;
+  const ZoneLayer& zones;
+  double radius;  ///< metres
 
-Eigen::Vector2d centre_of(Cell cell) { return {cell.x + 0.5, cell.y + 0.5}; }
+  [[nodiscard]] double in_cells() const { return radius / grid.resolution(); }
+};
 
-/// The cells around `p` (in cells) that the robot can go to in a straight line. Those one step away from p's own are
-/// left out where that one serves: the search gets there by itself.
-std::vector<Anchor> anchors(FreeSpace& space, const Eigen::Vector2d& p) {
-  const Cell own = cell_of(p);
-  const auto serves = [&](int dx, int dy) {
-    const Cell cell{own.x + dx, own.y + dy};
-    return space.is_open(cell) && space.sees(p, centre_of(cell));
-  };
-  std::vector<Anchor> found;
-  const bool own_serves = serves(0, 0);
-  for (int dy = -1; dy <= 1; ++dy) {
-    for (int dx = -1; dx <= 1; ++dx) {
-      const Cell cell{own.x + dx, own.y + dy};
-      const bool is_own = dx == 0 && dy == 0;
-      const bool is_one_step =
-          !is_own && own_serves && space.is_open({cell.x, own.y}) && space.is_open({own.x, cell.y});
-      if (is_one_step || !serves(dx, dy)) continue;
-      found.push_back({cell, cost_of((centre_of(cell) - p).norm())});
-    }
+double least_clearance(const Task& task, std::span<const Eigen::Vector2d> points, Against against) {
+  // Ends, because beyond the map all is unknown, and zones end.
+  for (double reach = task.radius + 4 * task.grid.resolution();; reach *= 2) {
+    if (const auto found = clearance(task.grid, points, reach, task.zones, against)) return *found;
   }
-  return found;
 }
 
-/// The furthest of `points` that can be seen from `from`, as far as doubling and then halving of the step tells.
-std::size_t furthest_seen(FreeSpace& space, const Points& points, std::size_t from) {
-  const auto seen = [&](std::size_t to) { return space.sees(points[from], points[to]); };
-  const std::size_t last = points.size() - 1;
-  std::size_t good = from + 1;  // each point sees the next: that is how they were found
-  std::size_t step = 1;
-  while (good < last && seen(std::min(good + step, last))) {
-    good = std::min(good + step, last);
-    step *= 2;
-  }
-  for (step /= 2; step > 0; step /= 2) {
-    if (good + step <= last && seen(good + step)) good += step;
-  }
-  return good;
-}
-
-/// Leaves out every point that the path can do without, first from one end, then each that is left.
-Points shorten(FreeSpace& space, const Points& points) {
-  Points path{points.front()};
-  for (std::size_t i = 0; i + 1 < points.size(); path.push_back(points[i])) i = furthest_seen(space, points, i);
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (std::size_t i = 1; i + 1 < path.size();) {
-      if (!space.sees(path[i - 1], path[i + 1])) {
-        ++i;
-        continue;
-      }
-      path.erase(path.begin() + static_cast<std::ptrdiff_t>(i));
-      changed = true;
-    }
-  }
-  return path;
-}
-
-double least_clearance(const Grid& grid, std::span<const Eigen::Vector2d> points, double radius) {
-  for (double reach = radius + 4 * grid.resolution();; reach *= 2) {  // ends, because beyond the map all is unknown
-    if (const std::optional<double> found = clearance(grid, points, reach)) return *found;
-  }
+/// What a robot at `end` would overlap.
+PlanResult too_near(const Task& task, const End& end) {
+  double gap = least_clearance(task, {&end.position, 1}, Against::kUntouchable);
+  // Where contact is allowed its body is clear, but its centre touches what it may not enter.
+  if (gap >= task.radius) gap = least_clearance(task, {&end.position, 1}, Against::kImpassable);
+  const double r = task.grid.resolution();
+  const auto zone = task.zones.nearest_no_go(end.position / r, gap / r + kTouch);
+  return refusal(end.clearance, describe(end.what, end.position) + " is " + metres(gap) + " from " +
+                                    (zone ? no_go(zone->name) : "the nearest wall or unobserved cell") +
+                                    ", the robot needs " + metres(task.radius));
 }
 
 /// Scales back to metres, keeps both ends exact, and lets the validator have the last word.
-PlanResult finish(const Grid& grid, Points points, const End& start, const End& goal, double radius) {
-  for (Eigen::Vector2d& p : points) p *= grid.resolution();
+PlanResult finish(const Task& task, Points points, const End& start, const End& goal) {
+  for (Eigen::Vector2d& p : points) p *= task.grid.resolution();
   points.front() = start.position;
   points.back() = goal.position;
   PlanResult result;
-  if (!is_clear(grid, points, radius)) {
+  if (!is_clear(task.grid, points, task.radius, task.zones)) {
     return refusal(Reason::kValidationFailed, "the path that was found does not stand the final check: report this");
   }
   result.reason = Reason::kOk;
   for (std::size_t i = 1; i < points.size(); ++i) result.length += (points[i] - points[i - 1]).norm();
-  result.least_clearance = least_clearance(grid, points, radius);
+  result.least_clearance = least_clearance(task, points, Against::kImpassable);
   result.points = std::move(points);
   result.message = "a path of " + metres(result.length) + ", at least " + metres(result.least_clearance) +
-                   " from anything occupied or unknown";
+                   " from anything occupied or unknown" + (task.zones.has_no_go() ? " and from no-go zones" : "");
   return result;
 }
 
-PlanResult no_path(const CellPath& path) {
-  if (path.status == CellPath::Status::kGaveUp) {
-    return refusal(Reason::kSearchLimit,
-                   "no path within " + std::to_string(kMaxExpanded) + " cells: the map is too big");
+/// Looks for a way as if there were no no-go zones, with about the effort that it took to find none, and says which
+/// zone that one meets first.
+std::string cut_off(const Task& task, FreeSpace& space, const std::array<Eigen::Vector2d, 2>& p,
+                    std::int64_t& expanded) {
+  FreeSpace without(task.grid, task.in_cells(), task.zones, FreeSpace::NoGo::kIgnored);
+  const std::vector<Anchor> starts = anchors(without, p[0]);
+  const std::vector<Anchor> goals = anchors(without, p[1]);
+  if (starts.empty() || goals.empty()) return {};
+  const CellPath path = find_path(without, starts, goals, expanded + kLook);
+  expanded += path.expanded;
+  if (path.status != CellPath::Status::kFound) return {};
+  std::string which = "a no-go zone";
+  for (const Cell cell : path.cells) {
+    if (space.is_open(cell)) continue;
+    if (const auto zone = task.zones.nearest_no_go(centre_of(cell), task.in_cells() + kTouch))
+      which = no_go(zone->name);
+    break;
   }
-  return refusal(Reason::kNoValidPath, "no way through: walls, or space not yet observed, cut the goal off");
+  return which + " cuts the goal off: without no-go zones there is a way";
 }
 
 /// A straight line counts as tried, too; it may be free where no cell's centre is near.
 void add_line(Region& region, const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
   const int steps = static_cast<int>((to - from).norm() / 4) + 1;
   for (int i = 0; i <= steps; ++i) region.add(cell_of(from + (to - from) * i / steps));
+}
+
+PlanResult no_path(const Task& task, FreeSpace& space, const std::array<Eigen::Vector2d, 2>& p, CellPath found) {
+  PlanResult result;
+  if (found.status == CellPath::Status::kGaveUp) {
+    result =
+        refusal(Reason::kSearchLimit, "no path within " + std::to_string(kMaxExpanded) + " cells: the map is too big");
+  } else {
+    result = refusal(Reason::kNoValidPath, "no way through: walls, or space not yet observed, cut the goal off");
+    const std::string why = space.met_no_go() ? cut_off(task, space, p, found.expanded) : "";
+    if (!why.empty()) result.message = "no way through: " + why;
+  }
+  result.expanded = found.expanded;
+  result.reached = std::move(found.reached);
+  add_line(result.reached, p[0], p[1]);
+  return result;
 }
 
 /// Either end may be shut in, most often in a small place: a look from both comes before a long search.
@@ -183,40 +173,29 @@ CellPath find_from_both_ends(FreeSpace& space, std::span<const Anchor> starts, s
   return path;
 }
 
-PlanResult search(const Grid& grid, const End& start, const End& goal, double radius) {
-  FreeSpace space(grid, radius / grid.resolution());
+PlanResult search(const Task& task, const End& start, const End& goal) {
+  FreeSpace space(task.grid, task.in_cells(), task.zones);
   const std::array<const End*, 2> ends{&start, &goal};
   std::array<Eigen::Vector2d, 2> p;
   std::array<std::vector<Anchor>, 2> near;
   for (std::size_t i = 0; i < 2; ++i) {
-    p[i] = ends[i]->position / grid.resolution();
-    const std::string where = describe(ends[i]->what, ends[i]->position);
-    if (!space.sees(p[i], p[i])) {
-      return refusal(ends[i]->clearance,
-                     where + " is " + metres(least_clearance(grid, {&ends[i]->position, 1}, radius)) +
-                         " from the nearest wall or unobserved cell, the robot needs " + metres(radius));
-    }
+    p[i] = ends[i]->position / task.grid.resolution();
+    if (!space.sees(p[i], p[i])) return too_near(task, *ends[i]);
   }
-  if (space.sees(p[0], p[1])) return finish(grid, {p[0], p[1]}, start, goal, radius);
+  if (space.sees(p[0], p[1])) return finish(task, {p[0], p[1]}, start, goal);
   for (std::size_t i = 0; i < 2; ++i) {
     near[i] = anchors(space, p[i]);
     if (near[i].empty()) {
       return refusal(ends[i]->clearance, describe(ends[i]->what, ends[i]->position) +
-                                             " is too narrow a place for a robot of radius " + metres(radius));
+                                             " is too narrow a place for a robot of radius " + metres(task.radius));
     }
   }
-  const CellPath found = find_from_both_ends(space, near[0], near[1]);
-  PlanResult result;
-  if (found.status != CellPath::Status::kFound) {
-    result = no_path(found);
-    result.reached = found.reached;
-    add_line(result.reached, p[0], p[1]);
-  } else {
-    Points points{p[0]};
-    for (const Cell cell : found.cells) points.push_back(centre_of(cell));
-    points.push_back(p[1]);
-    result = finish(grid, shorten(space, points), start, goal, radius);
-  }
+  CellPath found = find_from_both_ends(space, near[0], near[1]);
+  if (found.status != CellPath::Status::kFound) return no_path(task, space, p, std::move(found));
+  Points points{p[0]};
+  for (const Cell cell : found.cells) points.push_back(centre_of(cell));
+  points.push_back(p[1]);
+  PlanResult result = finish(task, shorten(space, points), start, goal);
   result.expanded = found.expanded;
   return result;
 }
@@ -231,6 +210,9 @@ const char* name(Reason reason) {
     case Reason::kNoPose: return "NO_POSE";
     case Reason::kStartOutsideMap: return "START_OUTSIDE_MAP";
     case Reason::kGoalOutsideMap: return "GOAL_OUTSIDE_MAP";
+    case Reason::kNoZones: return "NO_ZONES";
+    case Reason::kStartInNoGo: return "START_IN_NO_GO";
+    case Reason::kGoalInNoGo: return "GOAL_IN_NO_GO";
     case Reason::kStartOccupied: return "START_OCCUPIED";
     case Reason::kGoalOccupied: return "GOAL_OCCUPIED";
     case Reason::kStartUnknown: return "START_UNKNOWN";
@@ -244,7 +226,8 @@ const char* name(Reason reason) {
   return "BAD_REQUEST";
 }
 
-PlanResult plan(const Grid& grid, const Eigen::Vector2d& start, const Eigen::Vector2d& goal, double radius) {
+PlanResult plan(const Grid& grid, const Eigen::Vector2d& start, const Eigen::Vector2d& goal, double radius,
+                const ZoneLayer& zones) {
   if (!start.allFinite() || !goal.allFinite() || !std::isfinite(radius)) {
     return refusal(Reason::kBadRequest, "start, goal and radius must be numbers, in metres");
   }
@@ -253,13 +236,23 @@ PlanResult plan(const Grid& grid, const Eigen::Vector2d& start, const Eigen::Vec
                                             metres(std::min(kMaxRadius, kMaxRadiusCells * grid.resolution())));
   }
   if (grid.cells().empty()) return refusal(Reason::kNoMap, "nothing has been observed in the height band yet");
-  const End from{
-      "start", start, Reason::kStartOutsideMap, Reason::kStartOccupied, Reason::kStartUnknown, Reason::kStartClearance};
-  const End to{
-      "goal", goal, Reason::kGoalOutsideMap, Reason::kGoalOccupied, Reason::kGoalUnknown, Reason::kGoalClearance};
-  if (auto refused = check_cell(grid, from)) return *refused;
-  if (auto refused = check_cell(grid, to)) return *refused;
-  return search(grid, from, to, radius);
+  const End from{"start",
+                 start,
+                 Reason::kStartOutsideMap,
+                 Reason::kStartInNoGo,
+                 Reason::kStartOccupied,
+                 Reason::kStartUnknown,
+                 Reason::kStartClearance};
+  const End to{"goal",
+               goal,
+               Reason::kGoalOutsideMap,
+               Reason::kGoalInNoGo,
+               Reason::kGoalOccupied,
+               Reason::kGoalUnknown,
+               Reason::kGoalClearance};
+  if (auto refused = check_cell(grid, zones, from)) return *refused;
+  if (auto refused = check_cell(grid, zones, to)) return *refused;
+  return search({grid, zones, radius}, from, to);
 }
 
 }  // namespace concord

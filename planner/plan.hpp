@@ -8,6 +8,7 @@
 
 #include "planner/grid.hpp"
 #include "planner/region.hpp"
+#include "planner/zone_layer.hpp"
 
 namespace concord {
 
@@ -17,8 +18,11 @@ enum class Reason {
   kBadRequest,
   kNoMap,
   kNoPose,
+  kNoZones,
   kStartOutsideMap,
   kGoalOutsideMap,
+  kStartInNoGo,
+  kGoalInNoGo,
   kStartOccupied,
   kGoalOccupied,
   kStartUnknown,
@@ -45,15 +49,15 @@ struct PlanResult {
   std::string message;                  ///< for a person
   std::vector<Eigen::Vector2d> points;  ///< map frame, metres, from the exact start to the exact goal; empty unless kOk
   double length = 0.0;                  ///< metres
-  double least_clearance = 0.0;         ///< least distance to a blocked cell, metres
+  double least_clearance = 0.0;         ///< least distance to a cell that is not free, or no-go, metres
   std::int64_t expanded = 0;            ///< cells the search looked at
   Region reached;                       ///< of a search that failed: it fails again until something there becomes free
 };
 
 /// A path for a round robot of `radius` metres over free cells, at any angle: the cheapest one over the grid's eight
 /// directions, shortened wherever the robot's disc can go straight, and checked by code that did not plan it.
-/// Unknown cells are walls. Any input is answered; the same input in the same way.
+/// Unknown cells are walls, so are no-go zones. Any input is answered; the same input in the same way.
 [[nodiscard]] PlanResult plan(const Grid& grid, const Eigen::Vector2d& start, const Eigen::Vector2d& goal,
-                              double radius);
+                              double radius, const ZoneLayer& zones = no_zones());
 
 }  // namespace concord

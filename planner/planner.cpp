@@ -50,25 +50,36 @@ void Planner::clear_map() {
 }
 
 std::vector<BrickIndex> Planner::project() {
-  const std::vector<ColumnChange> changes = grid_.update(map_, touched_);
+  const ZoneLayer::Change change{grid_.update(map_, touched_), false};
   touched_.clear();
-  if (changes.empty()) return {};
-  for (auto& [robot, active] : active_) {
-    if (must_replan(active, changes)) wait(active);
-  }
+  if (change.columns.empty()) return {};
+  check_active(change);
   std::vector<BrickIndex> columns;
-  columns.reserve(changes.size());
-  for (const ColumnChange& change : changes) columns.push_back(change.column);
+  columns.reserve(change.columns.size());
+  for (const ColumnChange& column : change.columns) columns.push_back(column.column);
   return columns;
+}
+
+void Planner::set_zones(std::span<const Zone> zones) {
+  has_zones_ = true;
+  check_active(zones_.set(zones));
+}
+
+void Planner::check_active(const ZoneLayer::Change& change) {
+  for (auto& [robot, active] : active_) {
+    if (must_replan(active, change)) wait(active);
+  }
 }
 
 /// A path that stands is kept as long as it is clear. One that failed is tried again when it may succeed now, or when
 /// its reason, which was found without a search, may have become another.
-bool Planner::must_replan(const Active& active, const std::vector<ColumnChange>& changes) const {
+bool Planner::must_replan(const Active& active, const ZoneLayer::Change& change) const {
+  const std::vector<ColumnChange>& columns = change.columns;
   if (active.points.empty()) {
-    return !is_failed_search(active.path) || std::any_of(changes.begin(), changes.end(), [&](const auto& change) {
-      return change.freed != 0 && active.reached.is_near(change.column);
-    });
+    return !is_failed_search(active.path) || change.anywhere ||
+           std::any_of(columns.begin(), columns.end(), [&](const ColumnChange& column) {
+             return column.freed != 0 && active.reached.is_near(column.column);
+           });
   }
   Eigen::Vector2d low = active.points.front();
   Eigen::Vector2d high = low;
@@ -78,12 +89,12 @@ bool Planner::must_replan(const Active& active, const std::vector<ColumnChange>&
   }
   const double margin = active.radius + grid_.resolution();
   const double side = kBrickSide * grid_.resolution();
-  const bool near = std::any_of(changes.begin(), changes.end(), [&](const ColumnChange& change) {
-    const Eigen::Vector2d corner(change.column.x * side, change.column.y * side);
-    return change.blocked != 0 && (corner.array() <= high.array() + margin).all() &&
-           (corner.array() + side >= low.array() - margin).all();
-  });
-  return near && !is_clear(grid_, active.points, active.radius);
+  const bool near = change.anywhere || std::any_of(columns.begin(), columns.end(), [&](const ColumnChange& column) {
+                      const Eigen::Vector2d corner(column.column.x * side, column.column.y * side);
+                      return column.blocked != 0 && (corner.array() <= high.array() + margin).all() &&
+                             (corner.array() + side >= low.array() - margin).all();
+                    });
+  return near && !is_clear(grid_, active.points, active.radius, zones_);
 }
 
 bool Planner::set_pose(const std::string& robot, const Eigen::Vector2d& p_map) {
@@ -107,19 +118,28 @@ bool Planner::has_moved(const Active& active, const Eigen::Vector2d& p_map) cons
   return (p_map - *active.start).norm() >= enough;
 }
 
+PlanResult Planner::answer(const Active& active) const {
+  PlanResult none;
+  if (!active.start) {
+    none.reason = Reason::kNoPose;
+    none.message = "nobody has said where " + active.request.robot + " is in the map: align it, or give a start";
+    return none;
+  }
+  if (!has_zones_ && !grid_.cells().empty()) {
+    none.reason = Reason::kNoZones;
+    none.message = "the no-go zones have not arrived from merge yet: ask again";
+    return none;
+  }
+  return plan(grid_, *active.start, active.request.goal, active.radius, zones_);
+}
+
 /// Returns the effort.
 std::int64_t Planner::try_to_plan(Active& active, const Moment& moment) const {
   const PathRequest& request = active.request;
   const auto pose = poses_.find(request.robot);
   active.start = request.start;
   if (!active.start && pose != poses_.end()) active.start = pose->second;
-  PlanResult result;
-  if (active.start) {
-    result = plan(grid_, *active.start, request.goal, active.radius);
-  } else {
-    result.reason = Reason::kNoPose;
-    result.message = "nobody has said where " + request.robot + " is in the map: align it, or give a start";
-  }
+  PlanResult result = answer(active);
   active.path = to_path(request, result, grid_.band().floor, moment);
   active.points = std::move(result.points);
   active.reached = std::move(result.reached);

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,10 +14,11 @@
 #include "planner/grid.hpp"
 #include "planner/plan.hpp"
 #include "planner/region.hpp"
+#include "planner/zone_layer.hpp"
 
 namespace concord {
 
-/// The planner's state: a copy of the map, its grid, where robots are, and the paths that are kept active.
+/// The planner's state: a copy of the map, its grid, the zones, where robots are, and the paths that are kept active.
 /// It is told what happens and when; what it answers is to be published.
 class Planner {
  public:
@@ -30,13 +32,18 @@ class Planner {
     std::int64_t utime = 0;
   };
 
-  explicit Planner(Grid grid) : grid_(std::move(grid)) {}
+  explicit Planner(Grid grid) : grid_(std::move(grid)), zones_(grid_.resolution(), grid_.band()) {}
 
   void set_brick(BrickIndex index, Brick brick);
   void clear_map();
   /// Brings the grid up to date; finds the active paths that the change touches. Returns the columns that changed.
   std::vector<BrickIndex> project();
   [[nodiscard]] const Grid& grid() const { return grid_; }
+
+  /// All zones that hold from now on; finds the active paths that the change touches. Before the first call there is no
+  /// path: nobody knows where robots may not go.
+  void set_zones(std::span<const Zone> zones);
+  [[nodiscard]] const ZoneLayer& zones() const { return zones_; }
 
   /// Where a robot is, map frame. False if it is one robot too many.
   bool set_pose(const std::string& robot, const Eigen::Vector2d& p_map);
@@ -75,7 +82,9 @@ class Planner {
   };
 
   std::int64_t try_to_plan(Active& active, const Moment& moment) const;
-  [[nodiscard]] bool must_replan(const Active& active, const std::vector<ColumnChange>& changes) const;
+  [[nodiscard]] PlanResult answer(const Active& active) const;
+  void check_active(const ZoneLayer::Change& change);
+  [[nodiscard]] bool must_replan(const Active& active, const ZoneLayer::Change& change) const;
   [[nodiscard]] bool has_moved(const Active& active, const Eigen::Vector2d& p_map) const;
   [[nodiscard]] std::vector<Active*> due(const Moment& moment);
   [[nodiscard]] const Path* known(const PathRequest& request) const;
@@ -86,6 +95,8 @@ class Planner {
   BrickMap map_;
   std::vector<BrickIndex> touched_;
   Grid grid_;
+  ZoneLayer zones_;
+  bool has_zones_ = false;  ///< they have been said, be it that there are none
   std::map<std::string, Eigen::Vector2d> poses_;
   std::map<std::string, Active> active_;  ///< by robot
   std::int64_t turns_ = 0;                ///< given out so far

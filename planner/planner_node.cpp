@@ -28,7 +28,8 @@ PlannerNode::PlannerNode(const NodeContext& context)
       receiver_(context.bus, context.counters, {.stream = "out/map", .resolution = context.site.resolution},
                 {.on_frame = [this](const std::string& frame_id) { on_frame(frame_id); },
                  .on_brick = [this](BrickIndex index, Brick brick) { planner_.set_brick(index, std::move(brick)); },
-                 .on_end = [this] { planner_.clear_map(); }}) {
+                 .on_end = [this] { planner_.clear_map(); }}),
+      zones_(context.bus, context.counters, "out/zones", [this](const std::vector<Zone>& zones) { on_zones(zones); }) {
   Bus& bus = context_.bus;
   Counters& counters = context_.counters;
   const std::string& self = context_.process;
@@ -63,6 +64,15 @@ void PlannerNode::on_frame(const std::string& frame_id) {
   sender_.begin(frame_id);
 }
 
+/// At once: a robot may be on its way into a zone.
+void PlannerNode::on_zones(const std::vector<Zone>& zones) {
+  planner_.set_zones(zones);
+  context_.counters.set("zones", static_cast<std::int64_t>(planner_.zones().size()));
+  context_.counters.set("zones_not_cell_by_cell", static_cast<std::int64_t>(planner_.zones().coarse().size()));
+  project();
+  speak();
+}
+
 void PlannerNode::project() {
   for (const BrickIndex column : planner_.project()) sender_.touch(column);
 }
@@ -82,6 +92,7 @@ void PlannerNode::on_request(const PathRequest& request) {
   auto [path, ended] = planner_.request(request, context_.site.agent(request.robot).radius, moment());
   const bool ok = path.status == name(Reason::kOk);
   if (!ok && !receiver_.synced()) path.message += "; the map has not fully arrived yet";
+  if (ok && !zones_.synced()) path.message += "; a change of the zones is under way";
   context_.counters.add("paths." + path.status);
   if (ended) publish(*ended);
   publish(path);

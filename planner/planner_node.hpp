@@ -3,12 +3,13 @@
 #include <memory>
 
 #include "bus/brick_stream.hpp"
+#include "bus/list_stream.hpp"
 #include "bus/process.hpp"
 #include "planner/planner.hpp"
 
 namespace concord {
 
-/// The planner on the bus: hears the map, poses and path requests; says the grid, paths and answers.
+/// The planner on the bus: hears the map, the zones, poses and path requests; says the grid, paths and answers.
 class PlannerNode {
  public:
   /// @throws ConfigError for a height band that holds no voxel.
@@ -16,9 +17,11 @@ class PlannerNode {
 
   [[nodiscard]] const Planner& planner() const { return planner_; }
   [[nodiscard]] const BrickReceiver& map() const { return receiver_; }
+  [[nodiscard]] const ListReceiver<Zone>& zones() const { return zones_; }
 
  private:
   void on_frame(const std::string& frame_id);
+  void on_zones(const std::vector<Zone>& zones);
   void on_request(const PathRequest& request);
   void project();
   void speak();
@@ -29,6 +32,7 @@ class PlannerNode {
   Planner planner_;
   BrickSender sender_;
   BrickReceiver receiver_;
+  ListReceiver<Zone> zones_;
 };
 
 }  // namespace concord

@@ -36,6 +36,11 @@ class PlannerOnTheBus : public testing::Test {
                    [this](const std::string&, const Answer& value) { answers_.push_back(value); });
   }
 
+  void start_with_zones() {
+    start_planner(kStart);
+    say_zones();
+  }
+
   static Site make_site() {
     Site site;
     site.resolution = 0.1;
@@ -43,6 +48,20 @@ class PlannerOnTheBus : public testing::Test {
     site.planner.zmax = 0.8;
     site.unlisted.radius = 0.2;
     return site;
+  }
+
+  /// Merge's list; without any, that there are none.
+  void say_zones(const std::vector<Zone>& zones = {}) {
+    zone_sender_.set(zones);
+    bus_.deliver();
+  }
+  static Zone zone(const std::string& name, Zone::Kind kind, Eigen::Vector2d min, Eigen::Vector2d max) {
+    Zone zone;
+    zone.name = name;
+    zone.kind = kind;
+    zone.volume = Box{{min.x(), min.y(), 0}, {max.x(), max.y(), 2}};
+    zone.author = "anna";
+    return zone;
   }
 
   void start_planner(std::int64_t boot_id) { node_.emplace(NodeContext{bus_, counters_, site_, "planner", boot_id}); }
@@ -70,6 +89,7 @@ class PlannerOnTheBus : public testing::Test {
   Site site_ = make_site();
   BrickMap map_ = hall();
   BrickSender map_sender_{bus_, counters_, {.stream = "out/map", .resolution = 0.1, .boot_id = kStart}, map_};
+  ListSender<Zone> zone_sender_{bus_, counters_, "out/zones", 5e6};
   std::optional<PlannerNode> node_;
   BrickMap grid_;
   std::vector<Path> paths_;
@@ -101,7 +121,7 @@ TEST_F(PlannerOnTheBus, StreamsTheGridOfTheMap) {
 }
 
 TEST_F(PlannerOnTheBus, AnswersAndReplansWhenAWallIsBuilt) {
-  start_planner(kStart);
+  start_with_zones();
   map_sender_.begin("map");
   run_seconds(2);
   ask("p1", Eigen::Vector2d(0.4, 0.8), true);
@@ -130,7 +150,7 @@ TEST_F(PlannerOnTheBus, AnswersAndReplansWhenAWallIsBuilt) {
 }
 
 TEST_F(PlannerOnTheBus, SaysAKeptPathEverySecondAndWhenItEnds) {
-  start_planner(kStart);
+  start_with_zones();
   map_sender_.begin("map");
   run_seconds(2);
   ask("p1", Eigen::Vector2d(0.4, 0.8), true);
@@ -154,7 +174,7 @@ TEST_F(PlannerOnTheBus, SaysAKeptPathEverySecondAndWhenItEnds) {
 }
 
 TEST_F(PlannerOnTheBus, ForgetsWhereARobotIsThatIsNotAlignedAnyMore) {
-  start_planner(kStart);
+  start_with_zones();
   map_sender_.begin("map");
   run_seconds(2);
   MapPose pose;
@@ -177,7 +197,7 @@ TEST_F(PlannerOnTheBus, ForgetsWhereARobotIsThatIsNotAlignedAnyMore) {
 }
 
 TEST_F(PlannerOnTheBus, SaysWhyThereIsNoPath) {
-  start_planner(kStart);
+  start_with_zones();
   ask("p1", Eigen::Vector2d(0.4, 0.8), false);
   ASSERT_EQ(answers_.size(), 1U);
   EXPECT_FALSE(answers_[0].ok);
@@ -217,6 +237,91 @@ TEST_F(PlannerOnTheBus, ALatePlannerHasTheSameGrid) {
   EXPECT_TRUE(late.planner().grid().cells() == before);
 }
 
+TEST_F(PlannerOnTheBus, PlansNothingBeforeItKnowsTheZones) {
+  start_planner(kStart);
+  map_sender_.begin("map");
+  run_seconds(2);
+  ask("p1", Eigen::Vector2d(0.4, 0.8), true);
+  ASSERT_EQ(answers_.size(), 1U);
+  EXPECT_EQ(answers_[0].code, "NO_ZONES");
+  paths_.clear();
+  say_zones({zone("press", Zone::Kind::kNoGo, {1.4, 0.6}, {1.6, 1.6})});
+  run_seconds(1);
+  ASSERT_FALSE(paths_.empty());
+  EXPECT_EQ(paths_[0].status, "OK");
+  EXPECT_GT(paths_[0].length, 2.41);
+}
+
+TEST_F(PlannerOnTheBus, AZoneTurnsARobotAsideAndSaysWhoCutItOff) {
+  start_with_zones();
+  map_sender_.begin("map");
+  run_seconds(2);
+  const BrickMap grid = grid_;
+  ask("p1", Eigen::Vector2d(0.4, 0.8), true);
+  ASSERT_EQ(paths_.size(), 1U);
+  EXPECT_NEAR(paths_[0].length, 2.4, 1e-9);
+  say_zones({zone("press", Zone::Kind::kNoGo, {1.4, 0.6}, {1.6, 1.6})});
+  run_seconds(0.2);
+  ASSERT_EQ(paths_.size(), 2U);
+  EXPECT_EQ(paths_[1].status, "OK");
+  EXPECT_EQ(paths_[1].plan_number, 1);
+  EXPECT_GT(paths_[1].length, 2.41);
+  EXPECT_GE(paths_[1].least_clearance, 0.2 - 1e-6);
+  say_zones(
+      {zone("gate", Zone::Kind::kNoGo, {1.8, -1}, {2, 3}), zone("press", Zone::Kind::kNoGo, {1.4, 0.6}, {1.6, 1.6})});
+  run_seconds(0.2);
+  ASSERT_EQ(paths_.size(), 3U);
+  EXPECT_EQ(paths_[2].status, "NO_VALID_PATH");
+  EXPECT_NE(paths_[2].message.find("'"), std::string::npos) << paths_[2].message;
+  EXPECT_EQ(counters_.get("zones"), 2);
+  paths_.clear();
+  say_zones();
+  run_seconds(1.5);  // a search that failed rests for a second
+  ASSERT_FALSE(paths_.empty());
+  EXPECT_EQ(paths_.back().status, "OK");
+  EXPECT_EQ(paths_.back().plan_number, 3);
+  EXPECT_NEAR(paths_.back().length, 2.4, 1e-9);
+  EXPECT_TRUE(grid_ == grid);  // what was observed is what it was
+  EXPECT_TRUE(node_->planner().grid().cells() == grid);
+}
+
+TEST_F(PlannerOnTheBus, AskingForAGoalInANoGoZoneIsAnsweredWithItsName) {
+  start_planner(kStart);
+  say_zones({zone("Schweißzelle 2", Zone::Kind::kNoGo, {2.6, 0}, {3.2, 1.6}),
+             zone("dock", Zone::Kind::kAllowContact, {0, 0}, {3.2, 1.6})});
+  map_sender_.begin("map");
+  run_seconds(2);
+  ask("p1", Eigen::Vector2d(0.4, 0.8), false);
+  ASSERT_EQ(answers_.size(), 1U);
+  EXPECT_EQ(answers_[0].code, "GOAL_IN_NO_GO");
+  EXPECT_NE(answers_[0].message.find("'Schweißzelle 2'"), std::string::npos) << answers_[0].message;
+}
+
+TEST_F(PlannerOnTheBus, ALatePlannerHearsTheZonesThatWereSaidBefore) {
+  say_zones({zone("gate", Zone::Kind::kNoGo, {1.8, -1}, {2, 3})});
+  run_seconds(5);
+  start_planner(kStart + 5'000'000);
+  map_sender_.begin("map");
+  run_seconds(3);
+  EXPECT_TRUE(node_->zones().synced());
+  ask("p1", Eigen::Vector2d(0.4, 0.8), false);
+  ASSERT_EQ(answers_.size(), 1U);
+  EXPECT_EQ(answers_[0].code, "NO_VALID_PATH");
+  EXPECT_NE(answers_[0].message.find("'gate'"), std::string::npos) << answers_[0].message;
+}
+
+TEST_F(PlannerOnTheBus, AZoneTooLargeToDrawStillHolds) {
+  start_planner(kStart);
+  map_sender_.begin("map");
+  Zone plain = zone("plain", Zone::Kind::kNoGo, {1.8, -3e3}, {3e3, 3e3});
+  say_zones({plain});
+  run_seconds(2);
+  EXPECT_EQ(counters_.get("zones_not_cell_by_cell"), 1);
+  ask("p1", Eigen::Vector2d(0.4, 0.8), false);
+  ASSERT_EQ(answers_.size(), 1U);
+  EXPECT_EQ(answers_[0].code, "GOAL_IN_NO_GO");
+}
+
 TEST_F(PlannerOnTheBus, RefusesABandWithoutVoxels) {
   site_.planner.zmax = site_.planner.zmin;
   EXPECT_THROW(start_planner(kStart), ConfigError);
@@ -224,12 +329,14 @@ TEST_F(PlannerOnTheBus, RefusesABandWithoutVoxels) {
 
 TEST_F(PlannerOnTheBus, GarbageIsCountedAndNothingElse) {
   start_planner(kStart);
-  for (const char* channel : {"in/path_request", "out/map/bricks", "out/map/digest", "out/pose/robot1"}) {
+  for (const char* channel :
+       {"in/path_request", "out/map/bricks", "out/map/digest", "out/pose/robot1", "out/zones", "out/zones/digest"}) {
     bus_.publish(channel, Bytes{1, 2, 3});
   }
   bus_.deliver();
   EXPECT_EQ(counters_.get("refused.in/path_request.MALFORMED"), 1);
   EXPECT_EQ(counters_.get("refused.out/map/bricks.MALFORMED"), 1);
+  EXPECT_EQ(counters_.get("refused.out/zones.MALFORMED"), 1);
   EXPECT_TRUE(answers_.empty());
 }
 

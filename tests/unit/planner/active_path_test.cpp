@@ -45,6 +45,7 @@ const PathRequest kAcross = from_to("p1", "robot1", Eigen::Vector2d(2.5, 2.5), {
 
 class ActivePath : public testing::Test {
  protected:
+  ActivePath() { planner_.set_zones({}); }
   /// The map becomes this.
   void show(const Rows& rows) {
     const Grid wanted = test::sketch(rows);

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "core/corrections.hpp"
+#include "planner/grid.hpp"
+#include "planner/zone_cells.hpp"
+
+namespace concord {
+
+/// Where people forbade robots to go and where they allowed contact, as cells beside the grid, which stays as it was
+/// observed. The rules are in README.md. Map data, not a rated safety function.
+class ZoneLayer {
+ public:
+  /// A no-go zone of more cells, or one that together with those before it in the order of names has more than
+  /// kMaxCells, is taken as the rectangle around it; an allow-contact zone as none. Both are on the safe side.
+  static constexpr std::int64_t kMaxZoneCells = 1'000'000;
+  static constexpr std::int64_t kMaxCells = 16'000'000;
+
+  /// No zones, for any grid.
+  ZoneLayer() = default;
+  ZoneLayer(double resolution, const Band& band) : resolution_(resolution), band_(band) {}
+
+  /// Where robots are more restricted than before (`blocked`) or less (`freed`); ascending.
+  struct Change {
+    std::vector<ColumnChange> columns;
+    bool anywhere = false;  ///< beyond `columns`, a zone that is taken as a rectangle came, went or changed
+  };
+  /// The zones from now on. Draws those that are new or changed; the rest costs nothing. What it leads to depends on
+  /// `zones` alone, not on what was before.
+  Change set(std::span<const Zone> zones);
+
+  [[nodiscard]] bool has_no_go() const { return has_no_go_; }
+  [[nodiscard]] bool has_contact() const { return has_contact_; }
+  /// Cells of a column of bricks that lie in a no-go zone.
+  [[nodiscard]] std::uint64_t no_go(BrickIndex column) const;
+  /// Those in an allow-contact zone; some may lie in a no-go zone, too.
+  [[nodiscard]] std::uint64_t contact(BrickIndex column) const;
+  /// The first no-go zone, by name, that holds the cell; null where none does.
+  [[nodiscard]] const std::string* no_go_at(Cell cell) const;
+  struct Near {
+    std::string name;
+    double distance;  ///< of its nearest cell, in cells
+  };
+  /// The no-go zone nearest to `p` (in cells), if one is within `reach`.
+  [[nodiscard]] std::optional<Near> nearest_no_go(const Eigen::Vector2d& p, double reach) const;
+
+  [[nodiscard]] std::size_t size() const { return zones_.size(); }
+  /// Of zones that are not taken cell by cell.
+  [[nodiscard]] std::vector<std::string> coarse() const;
+
+ private:
+  struct Drawn {
+    Zone zone;
+    bool fits = false;     ///< `cells` can be had
+    bool is_fine = false;  ///< and are heeded
+    ZoneCells cells;       ///< columns only if is_fine
+    CellRectangle around;  ///< of a no-go zone that is not
+
+    [[nodiscard]] bool is_no_go() const { return zone.kind == Zone::Kind::kNoGo; }
+  };
+  struct Planes {
+    std::uint64_t no_go = 0, contact = 0;
+  };
+  /// What `set` has found out about so far.
+  struct Dirty {
+    std::vector<BrickIndex> columns;
+    bool anywhere = false;
+    void add(const Drawn& drawn);
+  };
+
+  [[nodiscard]] Drawn drawn(const Zone& zone) const;
+  [[nodiscard]] std::vector<Drawn> match(std::vector<Zone> zones, Dirty& dirty);
+  void settle(Drawn& zone, std::int64_t& left, Dirty& dirty) const;
+  [[nodiscard]] std::vector<ColumnChange> recompute(std::vector<BrickIndex> dirty);
+
+  double resolution_ = 1.0;
+  Band band_;
+  std::vector<Drawn> zones_;  ///< by name
+  std::unordered_map<BrickIndex, Planes, IndexHash> planes_;
+  std::vector<CellRectangle> rectangles_;  ///< of no-go zones that are not taken cell by cell
+  bool has_no_go_ = false;
+  bool has_contact_ = false;
+};
+
+[[nodiscard]] const ZoneLayer& no_zones();
+
+/// What the cells of a column of bricks are to a robot; bit x + 8 y.
+struct Ground {
+  std::uint64_t free = 0;       ///< as the grid says
+  std::uint64_t passable = 0;   ///< its centre may be there: free, and in no no-go zone
+  std::uint64_t touchable = 0;  ///< its body may be over it: passable, or contact is allowed and no no-go zone there
+};
+[[nodiscard]] Ground ground(const Grid& grid, const ZoneLayer& zones, BrickIndex column);
+
+}  // namespace concord
