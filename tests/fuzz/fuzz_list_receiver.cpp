@@ -65,7 +65,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       case 2: bus.publish(kChannels.digest, encode(ListDigest{number(in), number(in) * 5}, 1)); break;
       case 3: bus.publish(kChannels.need, encode(ListRequest{digest.content}, 1)); break;
       case 4: {
-        const auto length = std::min<std::size_t>(number(in), in.size());
+        const std::size_t wanted = number(in);
+        const std::size_t length = std::min(wanted, in.size());
         bus.publish(kChannels.parts, in.first(length));
         in = in.subspan(length);
         break;
