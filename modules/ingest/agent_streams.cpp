@@ -2,6 +2,11 @@
 
 namespace concord {
 
+Result<void> AgentStreams::check_room(std::size_t agents) const {
+  if (made_ + static_cast<std::int64_t>(2 * agents) <= kMaxMade) return {};
+  return refuse(Code::kTooLarge, "too many agents have come and gone; restart ingest");
+}
+
 std::unique_ptr<BrickSender> AgentStreams::make(const std::string& id, const BrickMap& layer,
                                                 std::int64_t incarnation) {
   ++made_;

@@ -21,8 +21,8 @@ class AgentStreams {
   AgentStreams(Bus& bus, Counters& counters, double resolution, double bytes_per_second, std::size_t max_ended)
       : bus_(bus), counters_(counters), resolution_(resolution), pace_(bytes_per_second), max_ended_(max_ended) {}
 
-  /// Whether a further agent can be given a stream, and be ended again.
-  [[nodiscard]] bool full() const { return made_ + 2 > kMaxMade; }
+  /// Whether so many further agents can be given a stream, and be ended again. Refused: kTooLarge.
+  [[nodiscard]] Result<void> check_room(std::size_t agents) const;
 
   /// The agent is new, or changed. Its layer must stay where it is in memory until end().
   void tell(const std::string& id, const Agent& agent, const Change& change);

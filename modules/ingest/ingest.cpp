@@ -4,6 +4,7 @@
 #include <cassert>
 #include <utility>
 
+#include "core/map_archive.hpp"
 #include "core/octomap_reader.hpp"
 #include "core/requests.hpp"
 
@@ -181,8 +182,40 @@ Result<Agent> Ingest::from_file(const std::string& id, const std::string& map, B
   return agent;
 }
 
+Result<std::vector<std::pair<std::string, Agent>>> Ingest::from_archive(ByteSpan file,
+                                                                        const std::string& request_id) const {
+  MapArchiveOptions options;
+  options.resolution = config_.resolution;
+  options.known_voxels = static_cast<std::uint64_t>(config_.max_known_voxels);
+  auto archive = read_map_archive(file, options);
+  if (!archive) return tl::unexpected(archive.error());
+  for (const SavedLayer& layer : archive->layers) {
+    if (find(layer.head.agent) != nullptr) {
+      return refuse(Code::kExists, "there is an agent called " + layer.head.agent + "; remove it first");
+    }
+    if (auto ok = admit(layer.head.agent, layer.head.frame_id, Source::kFile); !ok) return tl::unexpected(ok.error());
+  }
+  if (static_cast<std::int64_t>(agents_.size() + archive->layers.size()) > config_.max_agents) {
+    return refuse(Code::kTooLarge, "with the " + std::to_string(archive->layers.size()) +
+                                       " of the map there would be over " + std::to_string(config_.max_agents) +
+                                       " agents; remove some or raise ingest.max_agents in the site file");
+  }
+  const std::int64_t incarnation = loaded_incarnation(file, request_id);
+  std::vector<std::pair<std::string, Agent>> agents;
+  for (SavedLayer& layer : archive->layers) {
+    Agent agent;
+    agent.incarnation = incarnation;
+    agent.frame_id = std::move(layer.head.frame_id);
+    agent.source = Source::kFile;
+    agent.layer = std::move(layer.bricks);
+    agents.emplace_back(std::move(layer.head.agent), std::move(agent));
+  }
+  return agents;
+}
+
 Change Ingest::put(const std::string& id, Agent agent) {
-  last_incarnation_ = std::max(last_incarnation_, agent.incarnation);
+  // Others are counted on; those of loaded agents are not counted.
+  if (agent.incarnation < kLoadedIncarnation) last_incarnation_ = std::max(last_incarnation_, agent.incarnation);
   Agent& present = agents_[id];
   Change change;
   change.new_frame = present.frame_id != agent.frame_id;
@@ -195,6 +228,14 @@ Change Ingest::put(const std::string& id, Agent agent) {
 const Agent* Ingest::find(const std::string& id) const {
   const auto it = agents_.find(id);
   return it != agents_.end() ? &it->second : nullptr;
+}
+
+std::optional<std::int64_t> Ingest::loaded(std::int64_t incarnation) const {
+  std::optional<std::int64_t> known;
+  for (const auto& [id, agent] : agents_) {
+    if (agent.incarnation == incarnation) known = known.value_or(0) + agent.known();
+  }
+  return known;
 }
 
 }  // namespace concord

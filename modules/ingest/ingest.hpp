@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/brick_map.hpp"
@@ -22,7 +24,7 @@ struct CloudNumber {
 
 /// One agent's claim about space, in its own frame.
 struct Agent {
-  std::int64_t incarnation = 0;  ///< greater than that of an agent that had its id and was removed
+  std::int64_t incarnation = 0;  ///< unlike that of an agent that had its id and was removed
   std::string frame_id;
   Source source = Source::kStream;
   CloudNumber next_cloud;                ///< in this frame; earlier ones of the same start are duplicates
@@ -93,13 +95,19 @@ class Ingest {
   [[nodiscard]] Result<Agent> after_reset(const std::string& id) const;
   /// A saved map (`.bt` or `.ot`) as a new agent. Refused: kExists, and what octomap_reader.hpp refuses.
   [[nodiscard]] Result<Agent> from_file(const std::string& id, const std::string& map, ByteSpan file) const;
+  /// The agents of a native map file, by ascending id, each in its frame and with the incarnation that
+  /// loaded_incarnation states. Refused: kExists if any of them is there, kTooLarge, and what read_map_archive refuses.
+  [[nodiscard]] Result<std::vector<std::pair<std::string, Agent>>> from_archive(ByteSpan file,
+                                                                                const std::string& request_id) const;
 
-  /// Makes the agent be this. @pre `agent` came from after_reset, from_file or from disk.
+  /// Makes the agent be this. @pre `agent` came from after_reset, from_file, from_archive or from disk.
   Change put(const std::string& id, Agent agent);
   /// @pre the agent exists.
   void remove(const std::string& id) { agents_.erase(id); }
 
   [[nodiscard]] const Agent* find(const std::string& id) const;
+  /// Known voxels of the agents that a request has loaded (see loaded_incarnation); nullopt if none of them is there.
+  [[nodiscard]] std::optional<std::int64_t> loaded(std::int64_t incarnation) const;
   [[nodiscard]] const std::map<std::string, Agent>& agents() const { return agents_; }
   [[nodiscard]] const Config& config() const { return config_; }
 

@@ -96,8 +96,8 @@ void IngestNode::subscribe() {
 Result<void> IngestNode::admit(const std::string& id, const std::string& frame_id, Source source) const {
   if (auto ok = ingest_.admit(id, frame_id, source); !ok) return ok;
   const Agent* agent = ingest_.find(id);
-  if (agent == nullptr && streams_.full()) {
-    return refuse(Code::kTooLarge, "too many agents have come and gone; restart ingest");
+  if (agent == nullptr) {
+    if (auto room = streams_.check_room(1); !room) return room;
   }
   const auto input = inputs_.find(id);
   const bool streaming = agent != nullptr && agent->source == Source::kStream && input != inputs_.end() &&

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
@@ -57,6 +58,8 @@ class IngestNode {
   [[nodiscard]] Result<std::int64_t> reset(const std::string& id);
   [[nodiscard]] Result<std::int64_t> remove(const std::string& id);
   [[nodiscard]] Result<std::int64_t> load(const MapRequest& request);
+  [[nodiscard]] Result<std::int64_t> load_octomap(const MapRequest& request, const std::filesystem::path& file);
+  [[nodiscard]] Result<std::int64_t> load_archive(const MapRequest& request, const std::filesystem::path& file);
   [[nodiscard]] Result<std::int64_t> downsample(const DownsampleRequest& request);
   [[nodiscard]] Answer answer_to(const std::string& id, const Result<std::int64_t>& count, const char* done);
 

@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 
 #include "core/downsample.hpp"
+#include "core/map_archive.hpp"
 #include "core/octomap_reader.hpp"
 #include "ingest/ingest_node.hpp"
 #include "store/whole_file.hpp"
@@ -21,12 +22,19 @@ tl::unexpected<Error> unknown_agent(const std::string& id) {
   return refuse(Code::kNoAgent, "no agent is called " + id + "; concord agents lists them");
 }
 
-/// Without a format: the .ot if both exist, it says more.
-Result<Bytes> read_map(const std::filesystem::path& folder, const MapRequest& request) {
-  for (const std::string format : {"ot", "bt"}) {
+/// A saved map on disk.
+struct MapFile {
+  std::filesystem::path path;
+  bool is_archive = false;
+};
+
+/// Without a format: the one that says most of those that exist.
+Result<MapFile> find_map(const std::filesystem::path& folder, const MapRequest& request) {
+  for (const std::string format : {"concord", "ot", "bt"}) {
     if (!request.format.empty() && request.format != format) continue;
-    auto bytes = read_whole_file(folder / (request.map + "." + format), OctomapLimits{}.bytes);
-    if (bytes || bytes.error().code != Code::kNotFound) return bytes;
+    MapFile file{folder / (request.map + "." + format), format == "concord"};
+    std::error_code error;
+    if (std::filesystem::exists(file.path, error)) return file;
   }
   return refuse(Code::kNoMap, "no saved map is called " + request.map + "; concord maps lists them");
 }
@@ -51,7 +59,9 @@ void IngestNode::on_map_request(const std::string&, const MapRequest& request) {
   if (request.op != MapRequest::Op::kLoad) return;
   const std::uint64_t content = content_of(request);
   if (answers_.repeat(request.id, process_, content)) return;
-  answers_.give(answer_to(request.id, load(request), "loaded; it is an agent that waits to be aligned"), content);
+  answers_.give(
+      answer_to(request.id, load(request), "loaded; its agents wait to be aligned where the map does not say how"),
+      content);
 }
 
 /// Done again when it is asked again: parts may have been lost. Not while they are on their way.
@@ -97,17 +107,44 @@ Result<std::int64_t> IngestNode::remove(const std::string& id) {
 
 /// Nothing changes before it is on disk; so neither does anything after a refusal.
 Result<std::int64_t> IngestNode::load(const MapRequest& request) {
+  const auto file = find_map(site_.state / "maps", request);
+  if (!file) return tl::unexpected(file.error());
+  return file->is_archive ? load_archive(request, file->path) : load_octomap(request, file->path);
+}
+
+Result<std::int64_t> IngestNode::load_octomap(const MapRequest& request, const std::filesystem::path& file) {
   const std::string& id = request.agent.empty() ? request.map : request.agent;
   if (auto ok = admit(id, request.map, Source::kFile); !ok) return tl::unexpected(ok.error());
-  const auto file = read_map(site_.state / "maps", request);
-  if (!file) return tl::unexpected(file.error());
-  auto agent = ingest_.from_file(id, request.map, *file);
+  const auto bytes = read_whole_file(file, OctomapLimits{}.bytes);
+  if (!bytes) return tl::unexpected(bytes.error());
+  auto agent = ingest_.from_file(id, request.map, *bytes);
   if (!agent) return tl::unexpected(agent.error());
   if (auto done = store_.replace(id, &*agent); !done) return tl::unexpected(done.error());
   const Change change = ingest_.put(id, std::move(*agent));
   streams_.tell(id, *ingest_.find(id), change);
   spdlog::info("{}: loaded from map {}", id, request.map);
   return ingest_.find(id)->known();
+}
+
+/// All of its layers or none. A request whose answer was lost with the process that gave it is known by what it loaded.
+Result<std::int64_t> IngestNode::load_archive(const MapRequest& request, const std::filesystem::path& file) {
+  if (!request.agent.empty()) {
+    return refuse(Code::kBadRequest, "a .concord file names its agents; leave agent empty, or load format ot or bt");
+  }
+  const auto bytes = read_whole_file(file, kMaxArchiveBytes);
+  if (!bytes) return tl::unexpected(bytes.error());
+  const std::int64_t incarnation = loaded_incarnation(*bytes, request.id);
+  if (const auto known = ingest_.loaded(incarnation)) return *known;
+  auto agents = ingest_.from_archive(*bytes, request.id);
+  if (!agents) return tl::unexpected(agents.error());
+  if (auto room = streams_.check_room(agents->size()); !room) return tl::unexpected(room.error());
+  if (auto done = store_.add(*agents); !done) return tl::unexpected(done.error());
+  for (auto& [id, agent] : *agents) {
+    const Change change = ingest_.put(id, std::move(agent));
+    streams_.tell(id, *ingest_.find(id), change);
+    spdlog::info("{}: loaded from map {}", id, request.map);
+  }
+  return ingest_.loaded(incarnation).value_or(0);
 }
 
 Result<std::int64_t> IngestNode::downsample(const DownsampleRequest& request) {

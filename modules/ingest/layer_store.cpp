@@ -225,6 +225,18 @@ Result<void> LayerStore::replace(const std::string& id, const Agent* agent) {
   return {};
 }
 
+Result<void> LayerStore::add(const std::vector<std::pair<std::string, Agent>>& agents) {
+  auto transaction = Transaction::begin(database_);
+  if (!transaction) return tl::unexpected(transaction.error());
+  std::int64_t layer = last_layer_;
+  for (const auto& [id, agent] : agents) {
+    if (auto done = write_all(id, agent, ++layer); !done) return done;
+  }
+  if (auto done = transaction->commit(); !done) return done;
+  for (const auto& [id, agent] : agents) stands_now(id, ++last_layer_);
+  return {};
+}
+
 Result<void> LayerStore::write_all(const std::string& id, const Agent& agent, std::int64_t layer) {
   if (auto done = write_row(id, agent, layer); !done) return done;
   if (auto done = delete_dead_frames_.run(id); !done) return done;

@@ -55,6 +55,8 @@ class LayerStore {
 
   /// Makes the agent on disk be this; null: it is gone, and remembered as removed. On failure nothing changed.
   [[nodiscard]] Result<void> replace(const std::string& id, const Agent* agent);
+  /// Writes new agents: all of them or, when it fails or is killed in their midst, none.
+  [[nodiscard]] Result<void> add(const std::vector<std::pair<std::string, Agent>>& agents);
 
  private:
   struct Pending {

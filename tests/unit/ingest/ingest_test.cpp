@@ -5,6 +5,7 @@
 
 #include <limits>
 
+#include "core/map_archive.hpp"
 #include "layers.hpp"
 
 namespace concord {
@@ -261,6 +262,27 @@ TEST_F(IngestTest, a_file_becomes_an_agent) {
   EXPECT_EQ(code_of(ingest_.from_file("archive", "hall", file)), Code::kExists);
   EXPECT_EQ(code_of(ingest_.admit("archive", "hall", Source::kFile)), Code::kExists) << "before a file is read";
   EXPECT_TRUE(ingest_.from_file("other", std::string(40, 'x'), file)) << "the longest name of a map";
+}
+
+TEST_F(IngestTest, the_layers_of_a_map_file_are_agents_when_none_of_them_is_there) {
+  MapArchiveWriter writer(kResolution);
+  ASSERT_TRUE(writer.add({"a", "robot", "f", 17, 3}, wall_));
+  ASSERT_TRUE(writer.add({"b", "robot", "g", 17, 3}, BrickMap()));
+  const Bytes file = std::move(writer).finish().value();
+  const auto agents = ingest_.from_archive(file, "q1").value();
+  ASSERT_EQ(agents.size(), 2U);
+  EXPECT_EQ(agents[0].first, "a");
+  EXPECT_EQ(agents[0].second.frame_id, "f");
+  EXPECT_EQ(agents[0].second.source, Source::kFile);
+  EXPECT_EQ(agents[0].second.incarnation, loaded_incarnation(file, "q1"));
+  EXPECT_EQ(agents[0].second.layer, wall_);
+  EXPECT_TRUE(agents[1].second.layer.empty());
+  EXPECT_TRUE(ingest_.agents().empty());
+  EXPECT_EQ(ingest_.loaded(loaded_incarnation(file, "q1")), std::nullopt);
+
+  ingest_.put("b", agents[1].second);
+  EXPECT_EQ(ingest_.loaded(loaded_incarnation(file, "q1")), 0);
+  EXPECT_EQ(code_of(ingest_.from_archive(file, "q2")), Code::kExists);
 }
 
 TEST_F(IngestTest, a_damaged_file_is_refused) {

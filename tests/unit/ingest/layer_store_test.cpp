@@ -213,6 +213,40 @@ TEST_F(LayerStoreTest, a_reset_is_on_disk_at_once_and_its_frame_stays_dead) {
   EXPECT_EQ(agent.dead_frames, (std::vector<std::string>{"f"}));
 }
 
+TEST_F(LayerStoreTest, layers_that_are_added_together_are_all_there_or_none_when_it_is_killed_in_their_midst) {
+  const auto layer = [](LogOdds value) {
+    Agent agent;
+    agent.incarnation = 1;
+    agent.frame_id = "f";
+    agent.source = Source::kFile;
+    agent.layer = bricks(50'000, value);
+    return agent;
+  };
+  const std::vector<std::pair<std::string, Agent>> both{{"a", layer(kFree)}, {"b", layer(kOccupied)}};
+  store_.reset();
+  const pid_t child = ::fork();
+  if (child == 0) {
+    open();
+    (void)store_->add(both);
+    ::_exit(0);
+  }
+  // Pages go to the log before the commit, because they are more than its cache holds.
+  const fs::path log = folder_ / "ingest.db-wal";
+  std::error_code error;
+  while (::waitpid(child, nullptr, WNOHANG) == 0) {
+    if (fs::file_size(log, error) > 1'000'000 && !error) ::kill(child, SIGKILL);
+  }
+  EXPECT_GT(fs::file_size(log), 1'000'000U) << "it was killed in the midst of writing";
+  EXPECT_TRUE(reload().agents.empty());
+
+  ASSERT_TRUE(store_->add(both));
+  const auto loaded = reload();
+  ASSERT_EQ(loaded.agents.size(), 2U);
+  EXPECT_EQ(loaded.agents[0].second.layer, both[0].second.layer);
+  EXPECT_EQ(loaded.agents[1].second.layer, both[1].second.layer);
+  EXPECT_TRUE(store_->is_idle());
+}
+
 TEST_F(LayerStoreTest, removed_agents_are_remembered_up_to_a_number) {
   for (int i = 0; i < LayerStore::kMaxRemoved + 2; ++i) ASSERT_TRUE(store_->replace(numbered("r", i), nullptr));
   octomap("r5", "f", wall_);  // is back
