@@ -38,9 +38,8 @@ Result<Correction::Edit> evaluate_move(const EditRequest& request, std::vector<V
   if (selected.empty()) return refuse(Code::kEmpty, "nothing is occupied there");
   auto reached = shifted(selected, *by);
   if (!reached) return tl::unexpected(reached.error());
-  const bool meets = std::ranges::any_of(*reached, [&](VoxelIndex v) {
-    return is_occupied(map.at(v)) && !std::ranges::binary_search(selected, v);
-  });
+  const bool meets = std::ranges::any_of(
+      *reached, [&](VoxelIndex v) { return is_occupied(map.at(v)) && !std::ranges::binary_search(selected, v); });
   if (meets) return refuse(Code::kCollision, "it would meet what is there; delete that first, or move elsewhere");
   Correction::Edit edit{request.op, std::move(*reached), {}};
   std::ranges::set_difference(selected, edit.added, std::back_inserter(edit.deleted));

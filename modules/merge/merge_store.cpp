@@ -8,54 +8,65 @@
 #include "bus/site.hpp"
 #include "core/byte_stream.hpp"
 #include "core/voxel_boxes.hpp"
+#include "merge/merge_schema.hpp"
+#include "merge/number_text.hpp"
 
 namespace concord {
 namespace {
 
-constexpr const char* kMigrations[] = {
-    "CREATE TABLE site (resolution REAL NOT NULL);"
-    "CREATE TABLE transforms (agent TEXT NOT NULL, frame_id TEXT NOT NULL, incarnation INTEGER NOT NULL,"
-    "  has_layer INTEGER NOT NULL, author TEXT NOT NULL, utime INTEGER NOT NULL,"
-    "  x REAL NOT NULL, y REAL NOT NULL, z REAL NOT NULL,"
-    "  qx REAL NOT NULL, qy REAL NOT NULL, qz REAL NOT NULL, qw REAL NOT NULL,"
-    "  PRIMARY KEY (agent, frame_id, incarnation));"
-    "CREATE TABLE edits (revision INTEGER PRIMARY KEY AUTOINCREMENT, edit_id TEXT NOT NULL UNIQUE, author TEXT NOT "
-    "NULL,"
-    "  utime INTEGER NOT NULL, op INTEGER NOT NULL, boxes BLOB NOT NULL);",
-};
+using Kind = Operation::Kind;
 
-/// Stored for good, so numbered here and not by the enum.
-constexpr int kAdd = 1;
-constexpr int kDelete = 2;
+/// As they are stored; by the enum's order.
+constexpr std::array<std::string_view, 10> kKinds{"add",      "delete",      "move",        "undo",      "redo",
+                                                  "zone_add", "zone_change", "zone_delete", "transform", "weight"};
+constexpr const char* kNoGo = "no_go";
+constexpr const char* kAllowContact = "allow_contact";
 
-Bytes to_bytes(std::span<const VoxelBox> boxes) {
+std::string_view text_of(Kind kind) { return kKinds[static_cast<std::size_t>(kind)]; }
+
+std::optional<Kind> kind_of(std::string_view text) {
+  for (std::size_t i = 0; i < kKinds.size(); ++i) {
+    if (kKinds[i] == text) return static_cast<Kind>(i);
+  }
+  return std::nullopt;
+}
+
+tl::unexpected<Error> damaged(const std::string& what) {
+  return refuse(Code::kIo, "merge.db: " + what + "; move the file away and bring back a backup");
+}
+
+Bytes to_bytes(const std::vector<VoxelIndex>& voxels) {
   Bytes out;
-  for (const VoxelBox& box : boxes) {
+  for (const VoxelBox& box : to_boxes(voxels)) {
     for (const std::int32_t c : {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z}) append_le(out, c);
   }
   return out;
 }
 
 Result<std::vector<VoxelIndex>> voxels_of(ByteSpan bytes) {
+  if (bytes.empty()) return std::vector<VoxelIndex>{};
   std::vector<VoxelBox> boxes;
   while (!bytes.empty()) {
     std::array<std::int32_t, 6> c{};
     for (std::int32_t& value : c) {
       const auto read = read_le<std::int32_t>(bytes);
-      if (!read) return refuse(Code::kIo, "an edit in the store ends early; restore merge.db from a backup");
+      if (!read) return damaged("an edit ends early");
       value = *read;
     }
     boxes.push_back({{c[0], c[1], c[2]}, {c[3], c[4], c[5]}});
   }
-  return expand(boxes, std::int64_t{1} << 30);
+  return expand(boxes, 2 * kMaxEditVoxels);  // the first version let a million through
 }
 
 }  // namespace
 
 MergeStore::MergeStore(const std::filesystem::path& file, double resolution)
-    : database_(file, kMigrations),
-      put_transform_(database_.prepare("INSERT OR REPLACE INTO transforms VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?)")),
-      put_edit_(database_.prepare("INSERT INTO edits (edit_id, author, utime, op, boxes) VALUES (?,?,?,?,?)")) {
+    : database_(file, kMergeSchema),
+      put_correction_(database_.prepare("INSERT INTO corrections VALUES (?,?,?,?,?,?,?)")),
+      put_edit_(database_.prepare("INSERT INTO edits VALUES (?,?,?)")),
+      put_zone_(database_.prepare("INSERT INTO zones VALUES (?,?,?,?,?,?,?)")),
+      put_placement_(database_.prepare("INSERT INTO placements VALUES (?,?,?,?,?,?,?,?)")),
+      put_weight_(database_.prepare("INSERT INTO weights VALUES (?,?)")) {
   check_resolution(resolution);
 }
 
@@ -73,49 +84,156 @@ void MergeStore::check_resolution(double resolution) {
   }
 }
 
-Result<void> MergeStore::put_transform(const Placed& placed, const std::string& author, std::int64_t utime) {
-  const Eigen::Vector3d p = placed.T_map_agent.translation();
-  const Eigen::Quaterniond q(placed.T_map_agent.linear());
-  return put_transform_.run(placed.agent, placed.frame_id, placed.incarnation, placed.has_layer, author, utime, p.x(),
-                            p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
+/// What belongs to a correction beside its row in `corrections`.
+struct MergeStore::PutDetail {
+  MergeStore& store;
+  std::int64_t revision;
+
+  Result<void> operator()(const Correction::Edit& edit) const {
+    const Bytes added = to_bytes(edit.added);
+    const Bytes deleted = to_bytes(edit.deleted);
+    return store.put_edit_.run(revision, ByteSpan(added), ByteSpan(deleted));
+  }
+  Result<void> operator()(const Correction::Undo&) const { return {}; }
+  Result<void> operator()(const Correction::ZoneChange& change) const {
+    if (change.op == ZoneRequest::Op::kDelete) return {};
+    const Zone& zone = change.zone;
+    const Eigen::Vector3d p = zone.T_map_zone.translation();
+    return store.put_zone_.run(revision, zone.kind == Zone::Kind::kNoGo ? kNoGo : kAllowContact, to_text(zone.volume),
+                               p.x(), p.y(), p.z(), to_text(Eigen::Matrix3d(zone.T_map_zone.linear())));
+  }
+  Result<void> operator()(const Correction::Placement& placement) const {
+    const Eigen::Vector3d p = placement.T_map_agent.translation();
+    return store.put_placement_.run(revision, placement.frame_id, placement.incarnation, placement.has_layer, p.x(),
+                                    p.y(), p.z(), to_text(Eigen::Matrix3d(placement.T_map_agent.linear())));
+  }
+  Result<void> operator()(const Correction::Weight& weight) const {
+    return store.put_weight_.run(revision, weight.weight);
+  }
+};
+
+Result<void> MergeStore::put(const Correction& correction) { return put({&correction, 1}); }
+
+Result<void> MergeStore::put(std::span<const Correction> corrections) {
+  auto transaction = Transaction::begin(database_);
+  if (!transaction) return tl::unexpected(transaction.error());
+  for (const Correction& correction : corrections) {
+    if (const auto done = put_one(correction); !done) return done;
+  }
+  return transaction->commit();
 }
 
-Result<void> MergeStore::put_edit(const EditRequest& edit) {
-  const Bytes boxes = to_bytes(to_boxes(edit.voxels));
-  const int op = edit.op == EditRequest::Op::kAdd ? kAdd : kDelete;
-  return put_edit_.run(edit.id, edit.author, edit.utime, op, std::span<const std::uint8_t>(boxes));
-}
-
-Result<std::vector<MergeStore::Placed>> MergeStore::transforms() {
-  std::vector<Placed> out;
-  std::optional<Error> broken;
-  Statement read = database_.prepare(
-      "SELECT agent, frame_id, incarnation, has_layer, x, y, z, qx, qy, qz, qw FROM transforms "
-      "ORDER BY agent, frame_id, incarnation");
-  const auto done = read.for_each_row([&] {
-    const auto T = make_transform({read.real(4), read.real(5), read.real(6)},
-                                  {read.real(7), read.real(8), read.real(9), read.real(10)});
-    if (!T) broken = T.error();
-    if (T) out.push_back({read.text(0), read.text(1), read.integer(2), read.integer(3) != 0, *T});
-  });
-  if (!done) return tl::unexpected(done.error());
-  if (broken) return tl::unexpected(*broken);
-  return out;
-}
-
-Result<void> MergeStore::for_each_edit(const std::function<void(const EditRequest&)>& visit) {
-  std::optional<Error> broken;
-  Statement read = database_.prepare("SELECT edit_id, author, utime, op, boxes FROM edits ORDER BY revision");
-  const auto done = read.for_each_row([&] {
-    auto voxels = voxels_of(read.bytes(4));
-    if (!voxels) broken = voxels.error();
-    if (!voxels) return;
-    const auto op = read.integer(3) == kAdd ? EditRequest::Op::kAdd : EditRequest::Op::kDelete;
-    visit({read.text(0), read.text(1), op, std::move(*voxels), read.integer(2)});
-  });
+Result<void> MergeStore::put_one(const Correction& correction) {
+  const Operation row = summary(correction, true);
+  const auto done = put_correction_.run(row.revision, row.id, row.author, row.utime, text_of(row.kind), row.subject,
+                                        static_cast<std::int64_t>(correction.content));
   if (!done) return done;
-  if (broken) return tl::unexpected(*broken);
-  return {};
+  return std::visit(PutDetail{*this, correction.revision}, correction.what);
+}
+
+/// Reads what PutDetail wrote, into a correction that has all else.
+struct MergeStore::Readers {
+  explicit Readers(Database& database)
+      : edit(database.prepare("SELECT added, deleted FROM edits WHERE revision = ?")),
+        zone(database.prepare("SELECT x, y, z, rotation, kind, volume FROM zones WHERE revision = ?")),
+        placement(database.prepare(
+            "SELECT x, y, z, rotation, frame_id, incarnation, has_layer FROM placements WHERE revision = ?")),
+        weight(database.prepare("SELECT weight FROM weights WHERE revision = ?")) {}
+
+  Result<void> read(Kind kind, const std::string& subject, Correction& out) {
+    switch (kind) {
+      case Kind::kAdd: return read_edit(EditRequest::Op::kAdd, out);
+      case Kind::kDelete: return read_edit(EditRequest::Op::kDelete, out);
+      case Kind::kMove: return read_edit(EditRequest::Op::kMove, out);
+      case Kind::kUndo: out.what = Correction::Undo{subject, false}; return {};
+      case Kind::kRedo: out.what = Correction::Undo{subject, true}; return {};
+      case Kind::kZoneAdd: return read_zone(ZoneRequest::Op::kAdd, subject, out);
+      case Kind::kZoneChange: return read_zone(ZoneRequest::Op::kChange, subject, out);
+      case Kind::kZoneDelete: {
+        Zone gone;
+        gone.name = subject;
+        out.what = Correction::ZoneChange{ZoneRequest::Op::kDelete, gone};
+        return {};
+      }
+      case Kind::kTransform: return read_placement(subject, out);
+      case Kind::kWeight: break;
+    }
+    return read_weight(subject, out);
+  }
+
+  /// The row of this correction.
+  static Result<void> fetch(Statement& statement, const Correction& of) {
+    const Result<bool> row = statement.bind(of.revision).step();
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) return damaged("half of revision " + std::to_string(of.revision) + " is missing");
+    return {};
+  }
+  static Result<Transform> transform_in(const Statement& row) {
+    const auto rotation = rotation_from_text(row.text(3));
+    const Eigen::Vector3d p(row.real(0), row.real(1), row.real(2));
+    if (!rotation || !p.allFinite()) return damaged("a transform is none");
+    Transform T = Transform::Identity();
+    T.linear() = *rotation;
+    T.translation() = p;
+    return T;
+  }
+
+  Result<void> read_edit(EditRequest::Op op, Correction& out) {
+    if (const auto row = fetch(edit, out); !row) return row;
+    auto added = voxels_of(edit.bytes(0));
+    auto deleted = voxels_of(edit.bytes(1));
+    if (!added || !deleted) return damaged("the voxels of edit " + out.id + " are none");
+    out.what = Correction::Edit{op, std::move(*added), std::move(*deleted)};
+    return {};
+  }
+  Result<void> read_zone(ZoneRequest::Op op, const std::string& name, Correction& out) {
+    if (const auto row = fetch(zone, out); !row) return row;
+    const auto T = transform_in(zone);
+    const auto volume = volume_from_text(zone.text(5));
+    const std::string kind = zone.text(4);
+    if (!T || !volume || (kind != kNoGo && kind != kAllowContact)) return damaged("zone " + name + " is none");
+    Zone there;
+    there.name = name;
+    there.kind = kind == kNoGo ? Zone::Kind::kNoGo : Zone::Kind::kAllowContact;
+    there.volume = *volume;
+    there.T_map_zone = *T;
+    out.what = Correction::ZoneChange{op, there};
+    return {};
+  }
+  Result<void> read_placement(const std::string& agent, Correction& out) {
+    if (const auto row = fetch(placement, out); !row) return row;
+    const auto T = transform_in(placement);
+    if (!T) return tl::unexpected(T.error());
+    out.what = Correction::Placement{agent, placement.text(4), placement.integer(5), placement.integer(6) != 0, *T};
+    return {};
+  }
+  Result<void> read_weight(const std::string& agent, Correction& out) {
+    if (const auto row = fetch(weight, out); !row) return row;
+    const std::int64_t value = weight.integer(0);
+    if (value < 1 || value > 1000) return damaged("the weight of " + agent + " is none");
+    out.what = Correction::Weight{agent, static_cast<int>(value)};
+    return {};
+  }
+
+  Statement edit, zone, placement, weight;
+};
+
+Result<void> MergeStore::for_each(const std::function<void(Correction)>& visit) {
+  Readers readers(database_);
+  Statement rows = database_.prepare(
+      "SELECT revision, id, author, utime, kind, subject, content FROM corrections ORDER BY revision");
+  for (;;) {
+    const Result<bool> row = rows.step();
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) return {};
+    Correction correction{
+        rows.integer(0),   rows.text(1), rows.text(2), rows.integer(3), static_cast<std::uint64_t>(rows.integer(6)),
+        Correction::Undo{}};
+    const auto kind = kind_of(rows.text(4));
+    if (!kind) return damaged("a kind of correction called " + rows.text(4));
+    if (const auto read = readers.read(*kind, rows.text(5), correction); !read) return read;
+    visit(std::move(correction));
+  }
 }
 
 }  // namespace concord

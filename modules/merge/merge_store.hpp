@@ -19,17 +19,18 @@ class MergeStore {
   /// All of it or nothing, synced once. Refused (kIo): a full disk, say; nothing has changed then, and the next one
   /// may succeed. @pre its revision and id are new.
   [[nodiscard]] Result<void> put(const Correction& correction);
+  /// The same for many: all of them or none.
+  [[nodiscard]] Result<void> put(std::span<const Correction> corrections);
 
   /// Hands on each correction in the order of revisions. Refused (kIo): the file was damaged.
   [[nodiscard]] Result<void> for_each(const std::function<void(Correction)>& visit);
 
  private:
   struct PutDetail;
-  struct Details;
+  struct Readers;
 
   void check_resolution(double resolution);
-  [[nodiscard]] Result<decltype(Correction::what)> detail(std::int64_t revision, int kind, const std::string& subject,
-                                                          Details& read);
+  [[nodiscard]] Result<void> put_one(const Correction& correction);
 
   Database database_;
   Statement put_correction_, put_edit_, put_zone_, put_placement_, put_weight_;

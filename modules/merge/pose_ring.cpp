@@ -24,8 +24,8 @@ Result<Transform> PoseRing::at(std::int64_t utime) const {
   const Eigen::Quaterniond from(before.T_agent_base.linear());
   Transform T = Transform::Identity();
   T.linear() = from.slerp(share, Eigen::Quaterniond(after->T_agent_base.linear())).normalized().toRotationMatrix();
-  T.translation() =
-      before.T_agent_base.translation() + share * (after->T_agent_base.translation() - before.T_agent_base.translation());
+  T.translation() = before.T_agent_base.translation() +
+                    share * (after->T_agent_base.translation() - before.T_agent_base.translation());
   return T;
 }
 

@@ -111,6 +111,8 @@ Database::Database(const std::filesystem::path& file, std::span<const char* cons
   require(
       execute("PRAGMA locking_mode = EXCLUSIVE; PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;"
               "PRAGMA foreign_keys = ON; PRAGMA journal_size_limit = 16777216;"));
+  begin_.emplace(prepare("BEGIN IMMEDIATE"));
+  commit_.emplace(prepare("COMMIT"));
   migrate(migrations);
 }
 
@@ -147,7 +149,7 @@ Result<void> Database::execute(const std::string& sql) {
 }
 
 Result<Transaction> Transaction::begin(Database& database) {
-  const Result<void> begun = database.execute("BEGIN IMMEDIATE");
+  const Result<void> begun = database.begin_->run();
   if (!begun) return tl::unexpected(begun.error());
   return Transaction(database);
 }
@@ -160,7 +162,7 @@ Transaction::~Transaction() {
 
 Result<void> Transaction::commit() {
   assert(database_ != nullptr);
-  const Result<void> done = database_->execute("COMMIT");
+  const Result<void> done = database_->commit_->run();
   if (done) database_ = nullptr;
   return done;
 }

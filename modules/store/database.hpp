@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -109,6 +110,7 @@ class Database {
 
   std::filesystem::path file_;
   std::unique_ptr<sqlite3, Close> handle_;
+  std::optional<Statement> begin_, commit_;  ///< compiled once, there after the start
 };
 
 /// All or nothing: what runs between begin and commit is on disk after commit() succeeded, or is undone.

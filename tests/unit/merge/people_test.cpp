@@ -45,7 +45,8 @@ class PeopleTest : public ::testing::Test {
   }
   Code zone(const std::string& id, const std::string& author, ZoneRequest::Op op, const std::string& name,
             Volume volume = box(0, 1), std::int64_t base = kAnyRevision) {
-    const auto made = people_.check(ZoneRequest{id, author, op, name, Zone::Kind::kNoGo, volume, {}, base, 0}, T_, now_);
+    const auto made =
+        people_.check(ZoneRequest{id, author, op, name, Zone::Kind::kNoGo, volume, {}, base, 0}, T_, now_);
     if (!made) return made.error().code;
     make(id, author, *made);
     return kOk;
@@ -236,7 +237,11 @@ TEST_F(PeopleTest, TheHistoryIsFiltered) {
   EXPECT_EQ(ids([](HistoryRequest& r) { r.subject = "robot1"; }), "tw");
   EXPECT_EQ(ids([](HistoryRequest& r) { r.kind = Operation::Kind::kZoneAdd; }), "z");
   EXPECT_EQ(ids([](HistoryRequest& r) { r.since = kNow + 10; }), "buztw");
-  EXPECT_EQ(ids([](HistoryRequest& r) { r.since = kNow + 10; r.until = kNow + 20; }), "b");
+  EXPECT_EQ(ids([](HistoryRequest& r) {
+              r.since = kNow + 10;
+              r.until = kNow + 20;
+            }),
+            "b");
   EXPECT_EQ(ids([](HistoryRequest& r) { r.after_revision = 4; }), "tw");
   EXPECT_EQ(ids([](HistoryRequest& r) { r.after_revision = 40; }), "");
   EXPECT_EQ(ids([](HistoryRequest& r) { r.most = 2; }), "ab");

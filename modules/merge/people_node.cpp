@@ -1,0 +1,173 @@
+#include "merge/people_node.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "bus/recent_answers.hpp"
+
+namespace concord {
+namespace {
+
+constexpr std::int64_t kExpirePeriod = 100'000;
+const std::string kLeaseChannel = "in/lease";
+
+/// Of all that it asks, its time left out where that is only when it was asked.
+template <class Request>
+std::uint64_t content_without_time(Request& request) {
+  if constexpr (requires { encode(request); }) {
+    if constexpr (!std::is_same_v<Request, LocaliseRequest>) request.utime = 0;
+    return content_of(encode(request));
+  } else {
+    return content_of(request);
+  }
+}
+
+/// What the answer says, to a person.
+std::string message_of(const Operation& made) {
+  switch (made.kind) {
+    case Operation::Kind::kAdd:
+    case Operation::Kind::kDelete: return "pinned";
+    case Operation::Kind::kMove: return "moved";
+    case Operation::Kind::kUndo: return made.subject + " is undone";
+    case Operation::Kind::kRedo: return made.subject + " is done again";
+    case Operation::Kind::kZoneAdd: return "zone " + made.subject + " is there";
+    case Operation::Kind::kZoneChange: return "zone " + made.subject + " is changed";
+    case Operation::Kind::kZoneDelete: return "zone " + made.subject + " is gone";
+    case Operation::Kind::kTransform: return made.subject + " is placed";
+    case Operation::Kind::kWeight: break;
+  }
+  return made.subject + " has its weight";
+}
+
+/// Voxels that an edit pins; one of anything else.
+std::int64_t count_of(const Operation& made) { return std::max<std::int64_t>(made.count, 1); }
+
+}  // namespace
+
+PeopleNode::PeopleNode(const NodeContext& context, MergeStore& store, People& people, MapStreams& map,
+                       AgentsNode& agents)
+    : context_(context),
+      store_(store),
+      people_(people),
+      map_(map),
+      agents_(agents),
+      replies_(context),
+      zone_list_(context.bus, context.counters, "out/zones", context.site.stream.bytes_per_second),
+      lease_list_(context.bus, context.counters, "out/leases", context.site.stream.bytes_per_second) {
+  hear<EditRequest>("in/edit", [this](const EditRequest& request) { return check(request); });
+  hear<UndoRequest>("in/undo",
+                    [this](const UndoRequest& request) { return people_.check(request, context_.bus.now()); });
+  hear<ZoneRequest>("in/zone", [this](const ZoneRequest& request) { return check(request); });
+  hear<TransformRequest>("in/transform", [this](const TransformRequest& request) { return agents_.check(request); });
+  hear<LocaliseRequest>("in/localise", [this](const LocaliseRequest& request) { return agents_.check(request); });
+  hear<WeightRequest>("in/weight", [this](const WeightRequest& request) { return agents_.check(request); });
+  listen<LeaseRequest>(context_.bus, context_.counters, context_.process, kLeaseChannel,
+                       [this](const std::string&, const LeaseRequest& request) { on_lease(request); });
+  say_zones();
+  say_leases();
+  context_.bus.every(kExpirePeriod, [this] { expire_leases(); });
+}
+
+template <class Request, class Check>
+void PeopleNode::hear(const std::string& channel, Check check) {
+  listen<Request>(context_.bus, context_.counters, context_.process, channel,
+                  [this, check](const std::string& on, Request request) {
+                    const std::uint64_t content = content_without_time(request);
+                    if (repeat(on, request.id, content)) return;
+                    auto what = check(request);
+                    if (!what) return replies_.deny(on, request.id, what.error());
+                    const Correction correction{people_.revision() + 1, request.id, request.author,
+                                                context_.bus.now(),     content,    std::move(*what)};
+                    if (const auto done = commit(correction); !done) {
+                      return replies_.deny(on, request.id, done.error());
+                    }
+                    const Operation& made = people_.find(request.id)->operation;
+                    replies_.grant(made.id, made.revision, count_of(made), message_of(made));
+                  });
+}
+
+bool PeopleNode::repeat(const std::string& channel, const std::string& id, std::uint64_t content) {
+  const People::Made* before = people_.find(id);
+  if (before == nullptr) return false;
+  const Operation& made = before->operation;
+  if (before->content == 0 || before->content == content) {
+    replies_.grant(id, made.revision, count_of(made), message_of(made) + " since it was asked before");
+  } else {
+    replies_.deny(channel, id, {Code::kExists, "another request had this id; ids must be unique"});
+  }
+  return true;
+}
+
+Result<Correction::Edit> PeopleNode::check(const EditRequest& request) {
+  const auto T_map_frame = agents_.T_map_frame(request.frame);
+  if (!T_map_frame) return tl::unexpected(T_map_frame.error());
+  // What is occupied now, not 20 ms ago.
+  if (request.op == EditRequest::Op::kMove) map_.refold_and_send();
+  return people_.check(request, *T_map_frame, map_.layers().map(), context_.bus.now());
+}
+
+Result<Correction::ZoneChange> PeopleNode::check(const ZoneRequest& request) {
+  if (request.op == ZoneRequest::Op::kDelete) return people_.check(request, Transform::Identity(), context_.bus.now());
+  const auto T_map_frame = agents_.T_map_frame(request.frame);
+  if (!T_map_frame) return tl::unexpected(T_map_frame.error());
+  return people_.check(request, *T_map_frame, context_.bus.now());
+}
+
+Result<void> PeopleNode::commit(const Correction& correction) {
+  if (const auto stored = store_.put(correction); !stored) return stored;
+  follow(correction);
+  map_.refold_and_send();
+  return {};
+}
+
+Result<void> PeopleNode::append(std::vector<Correction> corrections) {
+  for (Correction& correction : corrections) {
+    correction.revision = people_.revision() + 1 + (&correction - corrections.data());
+  }
+  if (const auto stored = store_.put(corrections); !stored) return stored;
+  for (const Correction& correction : corrections) follow(correction);
+  map_.refold_and_send();
+  return {};
+}
+
+/// Makes it so, once it is stored.
+void PeopleNode::follow(const Correction& correction) {
+  BrickSet touched;
+  people_.apply(correction, touched);
+  map_.layers().mark(touched);
+  if (const auto* placement = std::get_if<Correction::Placement>(&correction.what)) agents_.follow(placement->agent);
+  if (const auto* weight = std::get_if<Correction::Weight>(&correction.what)) agents_.follow(weight->agent);
+  if (std::holds_alternative<Correction::ZoneChange>(correction.what)) say_zones();
+}
+
+void PeopleNode::on_lease(const LeaseRequest& request) {
+  if (request.hold) return hold(request);
+  const auto freed = people_.leases().free(request, context_.bus.now());
+  if (!freed) return replies_.deny(kLeaseChannel, request.id, freed.error());
+  if (*freed) say_leases();
+  replies_.grant(request.id, people_.revision(), *freed ? 1 : 0, "freed");
+}
+
+void PeopleNode::hold(const LeaseRequest& request) {
+  const auto T_map_frame = agents_.T_map_frame(request.frame);
+  if (!T_map_frame) return replies_.deny(kLeaseChannel, request.id, T_map_frame.error());
+  auto lease = people_.leases().check(request, *T_map_frame, context_.bus.now());
+  if (!lease) return replies_.deny(kLeaseChannel, request.id, lease.error());
+  people_.leases().hold(std::move(*lease));
+  say_leases();
+  replies_.grant(request.id, people_.revision(), 1, "held for 10 s");
+}
+
+void PeopleNode::expire_leases() {
+  if (people_.leases().expire(context_.bus.now())) say_leases();
+}
+
+void PeopleNode::say_zones() {
+  std::vector<Zone> zones;
+  for (const auto& [name, zone] : people_.zones()) zones.push_back(zone);
+  zone_list_.set(zones);
+}
+
+void PeopleNode::say_leases() { lease_list_.set(people_.leases().list()); }
+
+}  // namespace concord
