@@ -93,11 +93,11 @@ tl::unexpected<Failure> not_awake(const LiveStack& stack) {
 tl::expected<Replayed, Failure> replay_live(const std::filesystem::path& log, Site site) {
   Reading reading(site.resolution);
   // Read whole before anything is started: a log that is no log is refused at once.
-  if (const auto read = each_input(log, [&](const LogEvent& event) { reading.hear(event); }); !read) {
-    return fail(read.error());
-  }
+  const auto read = each_input(log, [&](const LogEvent& event) { reading.hear(event); });
+  if (!read) return fail(read.error());
   Replayed replayed;
   reading.into(replayed);
+  replayed.cut = *read;
 
   const TemporaryFolder folder("concord-replay");
   site.state = folder.path();
