@@ -7,6 +7,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "bus/lcm_url.hpp"
 #include "bus/site.hpp"
 
 namespace concord {
@@ -18,6 +19,11 @@ constexpr int kReceiveBuffer = 4 << 20;
 std::string with_receive_buffer(const std::string& url) {
   if (url.rfind("udpm", 0) != 0 || url.find("recv_buf_size") != std::string::npos) return url;
   return url + (url.find('?') == std::string::npos ? "?" : "&") + "recv_buf_size=" + std::to_string(kReceiveBuffer);
+}
+
+const std::string& checked(const std::string& url) {
+  if (const auto usable = check_lcm_url(url); !usable) throw ConfigError(usable.error().message);
+  return url;
 }
 
 void warn_about_small_buffers(const std::string& url) {
@@ -43,7 +49,7 @@ std::string anchored(const std::string& channel_regex) {
 }  // namespace
 
 LcmBus::LcmBus(const std::string& url, Counters& counters)
-    : lcm_(with_receive_buffer(url)),
+    : lcm_(with_receive_buffer(checked(url))),
       start_(microseconds(std::chrono::system_clock::now().time_since_epoch())),
       steady_start_(std::chrono::steady_clock::now()),
       counters_(counters) {

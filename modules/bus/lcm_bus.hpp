@@ -15,7 +15,8 @@ namespace concord {
 class LcmBus final : public Bus {
  public:
   /// `url` as LCM takes it, e.g. "udpm://239.255.76.67:7667?ttl=0" or "memq://".
-  /// @throws ConfigError when LCM cannot join, with the usual cause.
+  /// @throws ConfigError for a url that LCM cannot use (see check_lcm_url), and when it cannot join, with the usual
+  /// cause.
   LcmBus(const std::string& url, Counters& counters);
   ~LcmBus() override;
 

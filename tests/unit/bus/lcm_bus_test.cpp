@@ -140,6 +140,7 @@ TEST_F(LcmBusTest, time_never_goes_back) {
 TEST(LcmBusUrl, one_that_cannot_be_joined_is_a_configuration_error) {
   Counters counters;
   EXPECT_THROW(LcmBus("nonsense://", counters), ConfigError);
+  EXPECT_THROW(LcmBus("udpm://10.0.0.1:7667?ttl=0", counters), ConfigError);
 }
 
 TEST(CountersTest, refusals_of_hostile_names_are_bounded_and_push_nothing_else_out) {
