@@ -92,7 +92,10 @@ bool BrickReceiver::enter(const Origin& origin) {
     return frame_id != closed_frame_;
   }
   if (boot_id < boot_id_ && time - last_heard_ < kBootSilence) {
-    counters_.refused(config_.stream, {Code::kStale, "sent by an earlier start of the sender"});
+    counters_.refused(config_.stream,
+                      {Code::kStale, "a sender that started before the one that is heard now (boot_id " +
+                                         std::to_string(boot_id) + ", not " + std::to_string(boot_id_) +
+                                         ") still speaks; if two have this id, end one or give it another"});
     return false;
   }
   boot_id_ = boot_id;

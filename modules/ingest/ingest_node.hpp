@@ -58,7 +58,7 @@ class IngestNode {
   [[nodiscard]] Result<std::int64_t> remove(const std::string& id);
   [[nodiscard]] Result<std::int64_t> load(const MapRequest& request);
   [[nodiscard]] Result<std::int64_t> downsample(const DownsampleRequest& request);
-  [[nodiscard]] Answer answer_to(const std::string& id, const Result<std::int64_t>& count, const char* done);
+  [[nodiscard]] Answer answer_to(const std::string& id, const Result<std::int64_t>& count, const std::string& done);
 
   void write_some();
   void count();

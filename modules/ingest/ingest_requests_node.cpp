@@ -31,9 +31,11 @@ Result<Bytes> read_map(const std::filesystem::path& folder, const MapRequest& re
   return refuse(Code::kNoMap, "no saved map is called " + request.map + "; concord maps lists them");
 }
 
+const std::string& loaded_as(const MapRequest& request) { return request.agent.empty() ? request.map : request.agent; }
+
 }  // namespace
 
-Answer IngestNode::answer_to(const std::string& id, const Result<std::int64_t>& count, const char* done) {
+Answer IngestNode::answer_to(const std::string& id, const Result<std::int64_t>& count, const std::string& done) {
   if (count) return {id, process_, true, "OK", done, 0, *count};
   counters_.refused("request", count.error());
   return {id, process_, false, name(count.error().code), count.error().message, 0, 0};
@@ -51,7 +53,8 @@ void IngestNode::on_map_request(const std::string&, const MapRequest& request) {
   if (request.op != MapRequest::Op::kLoad) return;
   const std::uint64_t content = content_of(request);
   if (answers_.repeat(request.id, process_, content)) return;
-  answers_.give(answer_to(request.id, load(request), "loaded; it is an agent that waits to be aligned"), content);
+  answers_.give(answer_to(request.id, load(request), "loaded; agent " + loaded_as(request) + " waits to be aligned"),
+                content);
 }
 
 /// Done again when it is asked again: parts may have been lost. Not while they are on their way.
@@ -97,7 +100,7 @@ Result<std::int64_t> IngestNode::remove(const std::string& id) {
 
 /// Nothing changes before it is on disk; so neither does anything after a refusal.
 Result<std::int64_t> IngestNode::load(const MapRequest& request) {
-  const std::string& id = request.agent.empty() ? request.map : request.agent;
+  const std::string& id = loaded_as(request);
   if (auto ok = admit(id, request.map, Source::kFile); !ok) return tl::unexpected(ok.error());
   const auto file = read_map(site_.state / "maps", request);
   if (!file) return tl::unexpected(file.error());
