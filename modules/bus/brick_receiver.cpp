@@ -34,9 +34,8 @@ BrickReceiver::BrickReceiver(Bus& bus, Counters& counters, Config config, Events
       channels_(config_.stream),
       events_(std::move(events)),
       random_(static_cast<std::uint64_t>(bus.now()) ^ XXH3_64bits(config_.stream.data(), config_.stream.size())) {
-  bus_.every(kStep, [this, alive = std::weak_ptr(alive_)] {
-    if (!alive.expired()) request_missing();
-  });
+  bus_.every(
+      kStep, [this] { request_missing(); }, alive_);
 }
 
 bool BrickReceiver::synced() const {

@@ -4,7 +4,6 @@ namespace concord {
 
 std::unique_ptr<BrickSender> AgentStreams::make(const std::string& id, const BrickMap& layer,
                                                 std::int64_t incarnation) {
-  ++made_;
   // An id may have had a stream before, in this start or an earlier one: the time is an epoch greater than all of its.
   const BrickSender::Config config{"out/agent/" + id, resolution_, pace_, bus_.now(), incarnation};
   return std::make_unique<BrickSender>(bus_, counters_, config, layer);

@@ -49,6 +49,7 @@ class IngestNode {
   [[nodiscard]] BrickReceiver* receiver_of(const std::string& channel, const std::string& frame_id);
   [[nodiscard]] std::unique_ptr<BrickReceiver> make_receiver(const std::string& id);
   void ask_again_where_there_is_room();
+  void forget_silent_strangers();
   void changed(const std::string& id, const Change& change);
 
   void on_agent_request(const std::string& channel, const AgentRequest& request);
@@ -75,7 +76,6 @@ class IngestNode {
   std::map<std::string, Input> inputs_;
   std::map<std::string, std::int64_t> said_over_;  ///< when an agent was last told that its frame is over
   std::int64_t write_at_ = 0;                      ///< not before this time
-  int receivers_made_ = 0;
 };
 
 }  // namespace concord
