@@ -34,9 +34,8 @@ BrickReceiver::BrickReceiver(Bus& bus, Counters& counters, Config config, Events
       channels_(config_.stream),
       events_(std::move(events)),
       random_(static_cast<std::uint64_t>(bus.now()) ^ XXH3_64bits(config_.stream.data(), config_.stream.size())) {
-  bus_.every(kStep, [this, alive = std::weak_ptr(alive_)] {
-    if (!alive.expired()) request_missing();
-  });
+  bus_.every(
+      kStep, [this] { request_missing(); }, alive_);
 }
 
 bool BrickReceiver::synced() const {
@@ -92,7 +91,10 @@ bool BrickReceiver::enter(const Origin& origin) {
     return frame_id != closed_frame_;
   }
   if (boot_id < boot_id_ && time - last_heard_ < kBootSilence) {
-    counters_.refused(config_.stream, {Code::kStale, "sent by an earlier start of the sender"});
+    counters_.refused(config_.stream,
+                      {Code::kStale, "a sender that started before the one that is heard now (boot_id " +
+                                         std::to_string(boot_id) + ", not " + std::to_string(boot_id_) +
+                                         ") still speaks; if two have this id, end one or give it another"});
     return false;
   }
   boot_id_ = boot_id;

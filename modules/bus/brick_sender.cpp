@@ -24,16 +24,15 @@ constexpr double kOverheadBytes = 160;
 
 BrickSender::BrickSender(Bus& bus, Counters& counters, Config config, const BrickMap& map)
     : bus_(bus), counters_(counters), config_(std::move(config)), channels_(config_.stream), map_(map) {
-  bus_.subscribe(channels_.need, [this, alive = std::weak_ptr(alive_)](const std::string& channel, auto bytes) {
-    if (alive.expired()) return;
+  const auto hear = [this](const std::string& channel, std::span<const std::uint8_t> bytes) {
     const auto request = decode<BrickRequest>(bytes);
     if (request) return on_request(*request);
     counters_.refused(channel, request.error().error);
-  });
+  };
+  bus_.subscribe(channels_.need, hear, Bus::kQueued, alive_);
   bus_.pace().join(alive_, [this] { return send_one(); });
-  bus_.every(kStep, [this, alive = std::weak_ptr(alive_)] {
-    if (!alive.expired()) send_now();
-  });
+  bus_.every(
+      kStep, [this] { send_now(); }, alive_);
 }
 
 void BrickSender::renew_epoch() {

@@ -98,7 +98,7 @@ class BrickSender {
   Config config_;
   StreamChannels channels_;
   const BrickMap& map_;
-  std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  ///< timers and subscriptions of the bus outlive this
+  std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  ///< owns the timer, the subscription, the turn
 
   bool begun_ = false;
   std::string frame_id_;
@@ -195,7 +195,7 @@ class BrickReceiver {
   Config config_;
   StreamChannels channels_;
   Events events_;
-  std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  ///< timers of the bus outlive this
+  std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  ///< owns the timer
 
   std::int64_t boot_id_ = 0;
   std::int64_t incarnation_ = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -23,6 +24,9 @@ class Bus {
  public:
   using Handler = std::function<void(const std::string& channel, std::span<const std::uint8_t> bytes)>;
   using Task = std::function<void()>;
+  /// Something that lives as long as what a subscription or timer is for: when it has gone, the bus forgets that
+  /// between two messages. So what comes and goes costs nothing once it has gone, and may go within its own handler.
+  using Owner = std::weak_ptr<const void>;
 
   Bus() = default;
   Bus(const Bus&) = delete;
@@ -35,16 +39,20 @@ class Bus {
 
   static constexpr std::size_t kMaxChannel = 63;  ///< characters, by LCM
 
-  /// Calls `handler` with each message on a channel whose whole name matches the regular expression. `queued`: how many
-  /// may wait while the process is busy, further ones are dropped; times the largest message it is the memory at risk.
-  virtual void subscribe(const std::string& channel_regex, Handler handler, int queued) = 0;
-  void subscribe(const std::string& channel_regex, Handler handler) {
-    subscribe(channel_regex, std::move(handler), kQueued);
+  /// Calls `handler` with each message on a channel whose whole name matches the regular expression, until `owner` has
+  /// gone. `queued`: how many may wait while the process is busy, further ones are dropped; times the largest message
+  /// it is the memory at risk.
+  virtual void subscribe(const std::string& channel_regex, Handler handler, int queued, Owner owner) = 0;
+  /// For as long as the bus lives.
+  void subscribe(const std::string& channel_regex, Handler handler, int queued = kQueued) {
+    subscribe(channel_regex, std::move(handler), queued, self_);
   }
   /// Never blocks on receivers. @pre channel has at most kMaxChannel characters.
   virtual void publish(const std::string& channel, std::span<const std::uint8_t> bytes) = 0;
-  /// Calls `task` about every `period` microseconds, first after one period.
-  virtual void every(std::int64_t period, Task task) = 0;
+  /// Calls `task` about every `period` microseconds, first after one period, until `owner` has gone.
+  virtual void every(std::int64_t period, Task task, Owner owner) = 0;
+  /// For as long as the bus lives.
+  void every(std::int64_t period, Task task) { every(period, std::move(task), self_); }
   /// Microseconds since 1970; in a replay the log's time.
   [[nodiscard]] virtual std::int64_t now() const = 0;
 
@@ -53,6 +61,7 @@ class Bus {
 
  private:
   Pace pace_;
+  std::shared_ptr<bool> self_ = std::make_shared<bool>(true);
 };
 
 }  // namespace concord

@@ -7,6 +7,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "bus/lcm_url.hpp"
 #include "bus/site.hpp"
 
 namespace concord {
@@ -18,6 +19,11 @@ constexpr int kReceiveBuffer = 4 << 20;
 std::string with_receive_buffer(const std::string& url) {
   if (url.rfind("udpm", 0) != 0 || url.find("recv_buf_size") != std::string::npos) return url;
   return url + (url.find('?') == std::string::npos ? "?" : "&") + "recv_buf_size=" + std::to_string(kReceiveBuffer);
+}
+
+const std::string& checked(const std::string& url) {
+  if (const auto usable = check_lcm_url(url); !usable) throw ConfigError(usable.error().message);
+  return url;
 }
 
 void warn_about_small_buffers(const std::string& url) {
@@ -43,7 +49,7 @@ std::string anchored(const std::string& channel_regex) {
 }  // namespace
 
 LcmBus::LcmBus(const std::string& url, Counters& counters)
-    : lcm_(with_receive_buffer(url)),
+    : lcm_(with_receive_buffer(checked(url))),
       start_(microseconds(std::chrono::system_clock::now().time_since_epoch())),
       steady_start_(std::chrono::steady_clock::now()),
       counters_(counters) {
@@ -55,15 +61,17 @@ LcmBus::LcmBus(const std::string& url, Counters& counters)
 
 LcmBus::~LcmBus() = default;
 
-void LcmBus::subscribe(const std::string& channel_regex, Handler handler, int queued) {
-  Subscription& subscription = subscriptions_.emplace_back(Subscription{this, std::move(handler)});
-  lcm::Subscription* raw = lcm_.subscribe(anchored(channel_regex), &Subscription::receive, &subscription);
+void LcmBus::subscribe(const std::string& channel_regex, Handler handler, int queued, Owner owner) {
+  Subscription& subscription =
+      subscriptions_.emplace_back(Subscription{this, std::move(handler), std::move(owner), nullptr});
+  subscription.raw = lcm_.subscribe(anchored(channel_regex), &Subscription::receive, &subscription);
   assert(queued > 0);  // LCM takes 0 for no limit
-  raw->setQueueCapacity(queued);
+  subscription.raw->setQueueCapacity(queued);
 }
 
 void LcmBus::Subscription::receive(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
   const std::span bytes(static_cast<const std::uint8_t*>(buffer->data), buffer->data_size);
+  if (owner.expired()) return;
   if (!is_channel(channel)) return bus->counters_.add("refused.channel_name");
   bus->guarded(channel, [&] { handler(channel, bytes); });
 }
@@ -73,11 +81,24 @@ void LcmBus::publish(const std::string& channel, std::span<const std::uint8_t> b
   if (lcm_.publish(channel, bytes.data(), static_cast<unsigned>(bytes.size())) != 0) counters_.add("publish_failed");
 }
 
-void LcmBus::every(std::int64_t period, Task task) { timers_.push_back({period, now() + period, std::move(task)}); }
+void LcmBus::every(std::int64_t period, Task task, Owner owner) {
+  timers_.push_back({period, now() + period, std::move(task), std::move(owner)});
+}
 
 std::int64_t LcmBus::now() const { return start_ + microseconds(std::chrono::steady_clock::now() - steady_start_); }
 
+/// Not while a handler or task runs: it may be theirs.
+void LcmBus::forget_the_gone() {
+  std::erase_if(timers_, [](const Timer& timer) { return timer.owner.expired(); });
+  std::erase_if(subscriptions_, [this](const Subscription& subscription) {
+    if (!subscription.owner.expired()) return false;
+    lcm_.unsubscribe(subscription.raw);
+    return true;
+  });
+}
+
 void LcmBus::spin_once(int timeout_ms) {
+  forget_the_gone();
   std::int64_t wait = std::int64_t{timeout_ms} * 1000;
   for (const Timer& timer : timers_) wait = std::min(wait, timer.due - now());
   wait = std::clamp<std::int64_t>(wait, 0, std::int64_t{timeout_ms} * 1000);
@@ -92,7 +113,7 @@ void LcmBus::spin_once(int timeout_ms) {
 void LcmBus::run_due_timers() {
   for (Timer& timer : timers_) {
     const std::int64_t time = now();
-    if (time < timer.due) continue;
+    if (time < timer.due || timer.owner.expired()) continue;
     timer.due += timer.period * ((time - timer.due) / timer.period + 1);
     guarded("timer", timer.task);
   }

@@ -15,14 +15,15 @@ namespace concord {
 class LcmBus final : public Bus {
  public:
   /// `url` as LCM takes it, e.g. "udpm://239.255.76.67:7667?ttl=0" or "memq://".
-  /// @throws ConfigError when LCM cannot join, with the usual cause.
+  /// @throws ConfigError for a url that LCM cannot use (see check_lcm_url), and when it cannot join, with the usual
+  /// cause.
   LcmBus(const std::string& url, Counters& counters);
   ~LcmBus() override;
 
-  using Bus::subscribe;
-  void subscribe(const std::string& channel_regex, Handler handler, int queued) override;
+  using Bus::every, Bus::subscribe;
+  void subscribe(const std::string& channel_regex, Handler handler, int queued, Owner owner) override;
   void publish(const std::string& channel, std::span<const std::uint8_t> bytes) override;
-  void every(std::int64_t period, Task task) override;
+  void every(std::int64_t period, Task task, Owner owner) override;
   /// The system's clock at the start, then as much later as has passed: a clock that is set while we run (NTP, a robot
   /// without a battery) neither stops timers nor makes time go back. @see Bus::now
   [[nodiscard]] std::int64_t now() const override;
@@ -34,14 +35,18 @@ class LcmBus final : public Bus {
   struct Subscription {
     LcmBus* bus;
     Handler handler;
+    Owner owner;
+    lcm::Subscription* raw = nullptr;
     void receive(const lcm::ReceiveBuffer* buffer, const std::string& channel);
   };
   struct Timer {
     std::int64_t period;
     std::int64_t due;
     Task task;
+    Owner owner;
   };
 
+  void forget_the_gone();
   void run_due_timers();
   void guarded(const std::string& what, const Task& task);
 

@@ -47,16 +47,12 @@ class ContentHash {
 template <class T>
 ListSender<T>::ListSender(Bus& bus, Counters& counters, const std::string& list, double bytes_per_second)
     : bus_(bus), counters_(counters), channels_(list), bytes_per_second_(bytes_per_second) {
-  bus_.subscribe(channels_.need, [this, alive = std::weak_ptr(alive_)](const std::string& channel, auto bytes) {
-    if (alive.expired()) return;
-    const auto request = decode<ListRequest>(bytes);
-    if (request) return on_request(*request);
-    counters_.refused(channel, request.error().error);
-  });
+  listen<ListRequest>(
+      bus_, counters_, "", channels_.need,
+      [this](const std::string&, const ListRequest& request) { on_request(request); }, alive_);
   bus_.pace().join(alive_, [this] { return send_one(); });
-  bus_.every(kSendStep, [this, alive = std::weak_ptr(alive_)] {
-    if (!alive.expired()) send_now();
-  });
+  bus_.every(
+      kSendStep, [this] { send_now(); }, alive_);
 }
 
 template <class T>
@@ -130,17 +126,14 @@ ListReceiver<T>::ListReceiver(Bus& bus, Counters& counters, const std::string& l
       channels_(list),
       on_change_(std::move(on_change)),
       random_(static_cast<std::uint64_t>(bus.now()) ^ XXH3_64bits(list.data(), list.size())) {
-  listen<ListPart<T>>(bus_, counters_, "", channels_.parts,
-                      [this, alive = std::weak_ptr(alive_)](const std::string&, ListPart<T> part) {
-                        if (!alive.expired()) on_part(std::move(part));
-                      });
-  listen<ListDigest>(bus_, counters_, "", channels_.digest,
-                     [this, alive = std::weak_ptr(alive_)](const std::string&, const ListDigest& digest) {
-                       if (!alive.expired()) on_digest(digest);
-                     });
-  bus_.every(kAskStep, [this, alive = std::weak_ptr(alive_)] {
-    if (!alive.expired()) ask_if_quiet();
-  });
+  listen<ListPart<T>>(
+      bus_, counters_, "", channels_.parts, [this](const std::string&, ListPart<T> part) { on_part(std::move(part)); },
+      alive_);
+  listen<ListDigest>(
+      bus_, counters_, "", channels_.digest,
+      [this](const std::string&, const ListDigest& digest) { on_digest(digest); }, alive_);
+  bus_.every(
+      kAskStep, [this] { ask_if_quiet(); }, alive_);
 }
 
 template <class T>

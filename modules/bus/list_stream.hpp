@@ -54,7 +54,7 @@ class ListSender {
   Counters& counters_;
   ListChannels channels_;
   double bytes_per_second_;
-  std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  ///< timers and subscriptions of the bus outlive this
+  std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  ///< owns the timer and the subscriptions
 
   bool begun_ = false;
   std::uint64_t content_ = 0;
@@ -93,7 +93,7 @@ class ListReceiver {
   Counters& counters_;
   ListChannels channels_;
   OnChange on_change_;
-  std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  ///< timers and subscriptions of the bus outlive this
+  std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  ///< owns the timer and the subscriptions
 
   std::optional<std::uint64_t> held_content_;
   std::vector<T> items_;

@@ -4,8 +4,9 @@
 
 namespace concord {
 
-void LockstepBus::subscribe(const std::string& channel_regex, Handler handler, int /*queued: nothing ever waits*/) {
-  subscriptions_.push_back({std::regex(channel_regex), std::move(handler)});
+void LockstepBus::subscribe(const std::string& channel_regex, Handler handler, int /*queued: nothing ever waits*/,
+                            Owner owner) {
+  subscriptions_.push_back({std::regex(channel_regex), std::move(handler), std::move(owner)});
   by_channel_.clear();
 }
 
@@ -13,7 +14,16 @@ void LockstepBus::publish(const std::string& channel, std::span<const std::uint8
   queue_.push_back({channel, {bytes.begin(), bytes.end()}});
 }
 
-void LockstepBus::every(std::int64_t period, Task task) { timers_.push_back({period, now_ + period, std::move(task)}); }
+void LockstepBus::every(std::int64_t period, Task task, Owner owner) {
+  timers_.push_back({period, now_ + period, std::move(task), std::move(owner)});
+}
+
+/// Not while a handler or task runs: it may be theirs.
+void LockstepBus::forget_the_gone() {
+  std::erase_if(timers_, [](const Timer& timer) { return timer.owner.expired(); });
+  const auto gone = [](const Subscription& subscription) { return subscription.owner.expired(); };
+  if (std::erase_if(subscriptions_, gone) > 0) by_channel_.clear();
+}
 
 const std::vector<LockstepBus::Subscription*>& LockstepBus::subscribers(const std::string& channel) {
   const auto it = by_channel_.find(channel);
@@ -31,13 +41,16 @@ void LockstepBus::deliver() {
     queue_.pop_front();
     // By value: a handler may subscribe, which forgets the list.
     const std::vector<Subscription*> receivers = subscribers(message.channel);
-    for (Subscription* receiver : receivers) receiver->handler(message.channel, message.bytes);
+    for (Subscription* receiver : receivers) {
+      if (!receiver->owner.expired()) receiver->handler(message.channel, message.bytes);
+    }
   }
 }
 
 void LockstepBus::advance_to(std::int64_t utime) {
   deliver();
   while (true) {
+    forget_the_gone();
     const auto next =
         std::min_element(timers_.begin(), timers_.end(), [](const Timer& a, const Timer& b) { return a.due < b.due; });
     if (next == timers_.end() || next->due > utime) break;

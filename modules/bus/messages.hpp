@@ -276,19 +276,28 @@ inline constexpr int kQueuedOf<EditRequest> = 128;  ///< of up to 1.6 MB
 template <class T>
 inline constexpr int kQueuedOf<ListPart<T>> = 2048;  ///< two whole lists
 
-/// Subscribes to a message type: decodes, hands on what is good, counts what is not and refuses it to its asker.
-/// `process` names who refuses.
+/// What `listen` subscribes.
 template <class T, class Handle>
-void listen(Bus& bus, Counters& counters, const std::string& process, const std::string& channel_regex, Handle handle) {
-  const auto hear = [&bus, &counters, process, handle](const std::string& channel,
-                                                       std::span<const std::uint8_t> bytes) {
+[[nodiscard]] Bus::Handler hearing(Bus& bus, Counters& counters, const std::string& process, Handle handle) {
+  return [&bus, &counters, process, handle](const std::string& channel, std::span<const std::uint8_t> bytes) {
     Decoded<T> value = decode<T>(bytes);
     if (value) return handle(channel, std::move(*value));
     const auto& [error, id] = value.error();
     counters.refused(channel, error);
     if (!id.empty()) answer(bus, {id, process, false, name(error.code), error.message, 0, 0});
   };
-  bus.subscribe(channel_regex, hear, kQueuedOf<T>);
+}
+
+/// Subscribes to a message type: decodes, hands on what is good, counts what is not and refuses it to its asker.
+/// `process` names who refuses. Until `owner` has gone; without one for as long as the bus lives.
+template <class T, class Handle>
+void listen(Bus& bus, Counters& counters, const std::string& process, const std::string& channel_regex, Handle handle) {
+  bus.subscribe(channel_regex, hearing<T>(bus, counters, process, handle), kQueuedOf<T>);
+}
+template <class T, class Handle>
+void listen(Bus& bus, Counters& counters, const std::string& process, const std::string& channel_regex, Handle handle,
+            Bus::Owner owner) {
+  bus.subscribe(channel_regex, hearing<T>(bus, counters, process, handle), kQueuedOf<T>, std::move(owner));
 }
 
 }  // namespace concord

@@ -69,13 +69,16 @@ int run_process(const std::string& process, int argc, char** argv,
     if (add_options) add_options(app, site);
     try {
       app.parse(argc, argv);
-    } catch (const CLI::ParseError& e) {
-      return app.exit(e) == 0 ? 0 : 2;
+    } catch (const CLI::Success& e) {  // help was asked for
+      return app.exit(e);
     }
     spdlog::info("effective configuration:\n{}", to_yaml(site));
     stop_on_signals();
     serve(process, site, make);
     return 0;
+  } catch (const CLI::ParseError& e) {
+    spdlog::error("{}; see --help", e.what());
+    return 2;
   } catch (const ConfigError& e) {
     spdlog::error("{}", e.what());
     return 2;

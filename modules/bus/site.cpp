@@ -7,6 +7,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include "bus/lcm_url.hpp"
 #include "core/requests.hpp"
 
 namespace concord {
@@ -39,6 +40,7 @@ class Section {
   void read(const char* key, T& value) {
     const YAML::Node node = take(key);
     if (!node) return;
+    if (node.IsNull()) fail(key_node(key), name_ + "." + key + " has no value");  // a string would become "null"
     try {
       value = node.as<T>();
     } catch (const YAML::Exception&) {
@@ -132,9 +134,12 @@ Site read_site(const YAML::Node& root, const std::filesystem::path& directory) {
   Site site;
   Section top(root, "site");
   top.read("lcm_url", site.lcm_url);
+  if (const auto usable = check_lcm_url(site.lcm_url); !usable) fail(top.take("lcm_url"), usable.error().message);
   top.read("beyond_host", site.beyond_host);
   std::string state = site.state;
-  top.read("state", state);
+  top.read(
+      "state", state, [](const std::string& folder) { return !folder.empty(); },
+      "a folder; relative ones lie beside this file");
   site.state = directory / state;  // an absolute path stays as it is
   top.read("resolution", site.resolution, 0.005, 1.0);
   read_agents(top.take("agents"), site);

@@ -45,13 +45,14 @@ CLI::App& Program::add(const std::string& name, const std::string& what, Run run
 int Program::run(int argc, const char* const* argv) {
   try {
     app_.parse(argc, argv);
+    (void)common_.site();  // commands that need nothing of it refuse a bad one too
     const Outcome outcome = chosen_(common_);
     return outcome ? static_cast<int>(*outcome) : report(outcome.error(), common_);
   } catch (const CLI::ParseError& e) {
     // What was parsed before the mistake is not in common_ yet.
     common_.json = std::find(argv, argv + argc, std::string_view("--json")) != argv + argc;
-    if (common_.json && e.get_exit_code() != 0) return report({Exit::kUnusable, "USAGE", e.what()}, common_);
-    return app_.exit(e) == 0 ? 0 : static_cast<int>(Exit::kUnusable);
+    if (e.get_exit_code() == 0) return app_.exit(e);  // help was asked for
+    return report({Exit::kUnusable, "USAGE", e.what() + std::string("; see ") + app_.get_name() + " --help"}, common_);
   } catch (const ConfigError& e) {
     return report({Exit::kUnusable, "CONFIGURATION", e.what()}, common_);
   } catch (const std::exception& e) {  // what the system refuses: a temporary folder, memory

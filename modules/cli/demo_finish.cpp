@@ -10,6 +10,7 @@
 #include "cli/demo_run.hpp"
 #include "cli/end_request.hpp"
 #include "cli/map_file.hpp"
+#include "cli/numbers.hpp"
 
 namespace concord {
 namespace {
@@ -19,16 +20,13 @@ constexpr double kWhole = 120.0;  // seconds for all streams to arrive
 }  // namespace
 
 DemoRun::Step DemoRun::collect() {
-  if (const Step settled = settle(); !settled) return settled;
-  const MapRequest save{live_->new_id(), MapRequest::Op::kSave, "demo", "bt", false, ""};
-  const auto saved = live_->ask("in/map_request", encode(save, live_->bus().now()), save.id);
-  if (!saved) return tl::unexpected(saved.error());
+  if (const Step settled = settle("demo"); !settled) return settled;
   const auto synced = [this] {
     return copies_->conflicts.synced() &&
            std::ranges::all_of(copies_->agents, [](const auto& c) { return c.second->synced(); });
   };
-  report_.complete = live_->wait(kWhole, synced);
-  if (!report_.complete) say("not all streams arrived whole");
+  report_.streams_whole = live_->wait(kWhole, synced);
+  if (!report_.streams_whole) say("not all streams arrived whole");
   if (auto written = save_map(folder_.map(), copies_->map.map(), scene_.resolution); !written) {
     return fail(written.error());
   }
@@ -58,7 +56,9 @@ DemoRun::Step DemoRun::tell() {
   for (const DemoAgent& agent : scene_.agents) {
     const AgentState* state = watch_->state_of(agent.id);
     if (state == nullptr) return fail(Exit::kIncomplete, "INCOMPLETE", "merge no longer lists " + agent.id);
-    report_.agents.push_back({*state, &copies_->agents.at(agent.id)->map(), watch_->bytes_sent(agent)});
+    const std::int64_t lost = watch_->clouds_lost(agent);
+    if (lost > 0) say(agent.id + ": " + format_count(lost) + " clouds were lost on their way to ingest");
+    report_.agents.push_back({*state, &copies_->agents.at(agent.id)->map(), watch_->bytes_sent(agent), lost});
   }
   report_.edit = scene_.edit;
   report_.author = scene_.author;

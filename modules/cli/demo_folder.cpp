@@ -1,8 +1,7 @@
 #include "cli/demo_folder.hpp"
 
 #include <algorithm>
-
-#include "cli/map_file.hpp"
+#include <fstream>
 
 namespace concord {
 namespace {
@@ -28,7 +27,7 @@ tl::unexpected<Error> cannot(const std::string& what, const fs::path& path, cons
 
 }  // namespace
 
-Result<void> DemoFolder::prepare(const std::vector<fs::path>& inputs) const {
+Result<FileLock> DemoFolder::prepare(const std::vector<fs::path>& inputs) const {
   std::error_code error;
   const bool demo_was_here = fs::exists(path / kMarker, error);
   for (const char* name : kWritten) {
@@ -41,16 +40,20 @@ Result<void> DemoFolder::prepare(const std::vector<fs::path>& inputs) const {
     return refuse(Code::kExists, (path / name).string() +
                                      " is not from a demo and would be written over; give another folder with --out");
   }
-  fs::create_directories(path, error);
-  if (error) return cannot("make", path, error);
-  if (auto marked = write_file(path / kMarker, kMarkerText); !marked) return marked;
+  auto lock = FileLock::take(
+      path / kMarker, "a demo runs in " + path.string() + "; end that one first, or give another folder with --out");
+  if (!lock) return lock;
+  // Into the file that is locked: a new one in its place would not be.
+  if (!(std::ofstream(path / kMarker) << kMarkerText << std::flush)) {
+    return refuse(Code::kIo, "cannot write in " + path.string());
+  }
   for (const char* name : kWritten) {
     fs::remove_all(path / name, error);
     if (error) return cannot("remove", path / name, error);
   }
   fs::create_directory(output(), error);
   if (error) return cannot("make", output(), error);
-  return {};
+  return lock;
 }
 
 }  // namespace concord

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "cli/file_lock.hpp"
 #include "core/error.hpp"
 
 namespace concord {
@@ -18,9 +19,10 @@ struct DemoFolder {
   [[nodiscard]] std::filesystem::path site() const { return path / "site.yaml"; }
 
   /// Makes it, without what an earlier demo wrote there; other things may lie in it and stay.
-  /// Refused, with nothing touched: files of such names that no demo wrote (kExists), one of `inputs` that would be
-  /// written over (kBadRequest). Refused: kIo.
-  [[nodiscard]] Result<void> prepare(const std::vector<std::filesystem::path>& inputs) const;
+  /// @return what keeps other demos off it.
+  /// Refused, with nothing touched: a demo that runs there (kBusy), files of such names that no demo wrote (kExists),
+  /// one of `inputs` that would be written over (kBadRequest). Refused: kIo.
+  [[nodiscard]] Result<FileLock> prepare(const std::vector<std::filesystem::path>& inputs) const;
 };
 
 }  // namespace concord

@@ -57,16 +57,18 @@ std::string seconds_or_never(const std::optional<double>& seconds) {
 
 std::vector<std::pair<std::string, std::string>> numbers_of(const DemoReport& report) {
   std::vector<std::pair<std::string, std::string>> numbers;
-  numbers.emplace_back("occupied voxels", format_count(static_cast<std::int64_t>(report.map->occupied_count())));
+  const auto add = [&](const char* name, std::string value) { numbers.push_back({name, std::move(value)}); };
+  add("occupied voxels", format_count(static_cast<std::int64_t>(report.map->occupied_count())));
   if (const MapScore* score = last_score(report)) {
-    numbers.emplace_back("precision (within one voxel)", percent(score->precision));
-    numbers.emplace_back("recall (within one voxel)", percent(score->recall));
+    add("precision (within one voxel)", percent(score->precision));
+    add("recall (within one voxel)", percent(score->recall));
   }
   if (report.merged) {
-    numbers.emplace_back("90 % of this surface, first robot alone", seconds_or_never(report.one_agent_seconds));
-    numbers.emplace_back("90 % of this surface, all agents", seconds_or_never(report.all_agents_seconds));
+    add("90 % of this surface, first robot alone", seconds_or_never(report.one_agent_seconds));
+    add("90 % of this surface, all agents", seconds_or_never(report.all_agents_seconds));
   }
-  numbers.emplace_back("sent by agents", format_kilobytes(report.bytes_sent()));
+  add("sent by agents", format_kilobytes(report.bytes_sent()));
+  add("clouds lost on the way", format_count(report.clouds_lost()));
   return numbers;
 }
 
@@ -98,10 +100,10 @@ std::string row(const std::vector<std::string>& cells, const char* tag) {
 }
 
 std::string agents_table(const DemoReport& report) {
-  std::string out = "<table>\n" + row({"agent", "kind", "known voxels", "occupied", "sent"}, "th");
+  std::string out = "<table>\n" + row({"agent", "kind", "known voxels", "occupied", "sent", "clouds lost"}, "th");
   for (const auto& agent : report.agents) {
     out += row({agent.state.id, agent.state.kind, format_count(agent.state.known), format_count(agent.state.occupied),
-                format_kilobytes(agent.bytes_sent)},
+                format_kilobytes(agent.bytes_sent), format_count(agent.clouds_lost)},
                "td");
   }
   return out + "</table>\n";
@@ -135,17 +137,23 @@ std::int64_t DemoReport::bytes_sent() const {
                          [](std::int64_t sum, const Agent& agent) { return sum + agent.bytes_sent; });
 }
 
+std::int64_t DemoReport::clouds_lost() const {
+  return std::accumulate(agents.begin(), agents.end(), std::int64_t{0},
+                         [](std::int64_t sum, const Agent& agent) { return sum + agent.clouds_lost; });
+}
+
 nlohmann::json to_json(const DemoReport& report) {
   nlohmann::json agents = nlohmann::json::array();
   for (const auto& agent : report.agents) {
     nlohmann::json object = to_json(agent.state);
     object["voxels"] = agent.state.known;
     object["bytes_sent"] = agent.bytes_sent;
+    object["clouds_lost"] = agent.clouds_lost;
     agents.push_back(std::move(object));
   }
   const MapScore* score = last_score(report);
   const std::size_t known = report.map->known_count(), occupied = report.map->occupied_count();
-  return {{"complete", report.complete},
+  return {{"complete", report.complete()},
           {"resolution", report.resolution},
           {"sources", report.sources},
           {"agents", agents},
@@ -207,7 +215,7 @@ td + td { font-variant-numeric: tabular-nums; }
   out += agents_table(report) + features_table(report) + paths_table(report);
   out +=
       "<p>The map: <a href=\"map.bt\">map.bt</a> (OctoMap). All numbers: <a href=\"report.json\">report.json</a>. "
-      "Everything that was said: demo.lcm (LCM log).</p>\n</body></html>\n";
+      "Everything that was said: <a href=\"demo.lcm\">demo.lcm</a> (LCM log).</p>\n</body></html>\n";
   return out;
 }
 

@@ -20,6 +20,7 @@ struct DemoReport {
     AgentState state;
     const BrickMap* map = nullptr;  ///< its submap, agent's frame
     std::int64_t bytes_sent = 0;
+    std::int64_t clouds_lost = 0;  ///< that ingest never got, by their numbers
   };
 
   double resolution = 0.05;
@@ -38,9 +39,12 @@ struct DemoReport {
   std::optional<double> one_agent_seconds, all_agents_seconds;
   std::optional<Eigen::Vector2d> start, goal;
   std::map<std::string, double> seconds;  ///< how long each part took
-  bool complete = true;                   ///< everything arrived
+  bool streams_whole = true;              ///< every brick stream arrived to its last version
 
   [[nodiscard]] std::int64_t bytes_sent() const;
+  [[nodiscard]] std::int64_t clouds_lost() const;
+  /// All that the agents sent is in what is reported: streams are whole and no cloud was lost.
+  [[nodiscard]] bool complete() const { return streams_whole && clouds_lost() == 0; }
 };
 
 [[nodiscard]] nlohmann::json to_json(const DemoReport& report);

@@ -16,10 +16,11 @@ namespace fs = std::filesystem;
 constexpr double kListen = 1.3;  // seconds in which a process that runs says its status
 constexpr double kStart = 30.0;  // seconds, as all below
 constexpr double kMapping = 600.0;
-constexpr double kSettled = 1.5;  // a map that has not changed for so long is done
 constexpr double kSync = 120.0;
 constexpr double kReplan = 5.0;
 constexpr double kProgress = 2.0;
+constexpr double kAgain = 0.2;
+constexpr double kCoarse = 0.5;   // metres; of points that nobody looks at
 constexpr double kMoments = 1.0;  // between two of them: agents say once a second how far they are
 
 bool nonempty(const fs::path& file) {
@@ -50,7 +51,7 @@ Outcome DemoRun::run() {
     if (!done) return tl::unexpected(done.error());
   }
   if (!options_.headless) show();
-  return report_.complete ? Exit::kDone : Exit::kIncomplete;
+  return report_.complete() ? Exit::kDone : Exit::kIncomplete;
 }
 
 DemoRun::Step DemoRun::prepare() {
@@ -61,7 +62,9 @@ DemoRun::Step DemoRun::prepare() {
 
   std::vector<fs::path> inputs(options_.maps.begin(), options_.maps.end());
   if (!common_.site_file.empty()) inputs.emplace_back(common_.site_file);
-  if (auto made = folder_.prepare(inputs); !made) return fail(made.error());
+  auto made = folder_.prepare(inputs);
+  if (!made) return not_started(made.error());
+  folder_lock_ = std::move(*made);
   const auto written = write_file(folder_.site(), to_yaml(demo_site(scene_, given, folder_.state())));
   if (!written) return fail(written.error());
   common_.site_file = folder_.site();
@@ -71,7 +74,7 @@ DemoRun::Step DemoRun::prepare() {
 DemoRun::Step DemoRun::start() {
   const double since = now();
   live_ = std::make_unique<Live>(common_);
-  watch_ = std::make_unique<DemoWatch>(*live_);
+  watch_ = std::make_unique<DemoWatch>(*live_, scene_);
   live_->wait(kListen, [this] { return watch_->anyone().has_value(); });
   if (const auto other = watch_->anyone()) {
     return fail(Exit::kRefused, "EXISTS",
@@ -81,8 +84,10 @@ DemoRun::Step DemoRun::start() {
   live_->bus().every(100'000, [this] { supervisor_.wait(std::chrono::milliseconds(0)); });
 
   const fs::path log = folder_.log();
-  const auto started = start_stack(supervisor_, {common_.site_file, live_->site().lcm_url, log, folder_.output()});
-  if (!started) return fail(started.error());
+  const Site& site = live_->site();
+  auto started = start_stack(supervisor_, {common_.site_file, site.lcm_url, site.state, log, folder_.output()});
+  if (!started) return not_started(started.error());
+  stack_lock_ = std::move(*started);
   const auto up = wait_for("the processes to start", kStart, [&] {
     return nonempty(log) && std::ranges::all_of(kStackProcesses, [&](const char* p) { return watch_->runs(p); });
   });
@@ -133,7 +138,7 @@ DemoRun::Step DemoRun::follow_mapping() {
     say_progress();
   }
   took("mapping", since);
-  const Step settled = settle();
+  const Step settled = settle("before_edit");
   note_moment();
   return settled;
 }
@@ -169,19 +174,48 @@ DemoRun::Step DemoRun::align(const AgentState& state) {
   return {};
 }
 
-DemoRun::Step DemoRun::settle() {
-  std::int64_t revision = -1;
-  double since = now();
-  return wait_for("the map", kSync, [&] {
-    if (!copies_->map.synced() || copies_->map.revision() != revision) {
-      revision = copies_->map.revision();
-      since = now();
-    }
-    return now() - since > kSettled;
+DemoRun::Step DemoRun::all_taken_in() {
+  std::map<std::string, std::int64_t> since;
+  for (const DemoAgent& agent : scene_.agents) {
+    if (!watch_->sends_clouds(agent)) continue;
+    // Ingest answers in the order in which it hears: what was sent before this question is in the layer.
+    const DownsampleRequest request{live_->new_id(), agent.id, kCoarse};
+    const auto answer = live_->ask("in/downsample", encode(request, live_->bus().now()), request.id);
+    if (!answer) return tl::unexpected(answer.error());
+    since[agent.id] = live_->bus().now();
+  }
+  return wait_for("all that was sent to be merged", kSync, [&] {
+    return std::ranges::all_of(scene_.agents, [&](const DemoAgent& agent) {
+      const AgentState* merged = watch_->state_of(agent.id);
+      const std::int64_t revision = watch_->revision(agent);
+      return watch_->finished(agent) && watch_->taken_in(agent, since[agent.id]) && merged->synced &&
+             merged->revision == revision && copies_->agents.at(agent.id)->synced() &&
+             copies_->agents.at(agent.id)->revision() == revision;
+    });
   });
 }
 
-tl::expected<Path, Failure> DemoRun::plan(bool keep_active) {
+tl::expected<std::int64_t, Failure> DemoRun::save(const std::string& name) {
+  const double end = now() + kSync;
+  for (;;) {
+    const MapRequest request{live_->new_id(), MapRequest::Op::kSave, name, "bt", true, ""};
+    const auto answer = live_->ask("in/map_request", encode(request, live_->bus().now()), request.id);
+    if (answer) return answer->revision;
+    // A merge that was started again waits for its layers first.
+    if (answer.error().code != concord::name(Code::kBusy) || now() > end) return tl::unexpected(answer.error());
+    live_->wait(kAgain, end_requested);
+    if (const Step fine = check("the map"); !fine) return tl::unexpected(fine.error());
+  }
+}
+
+DemoRun::Step DemoRun::settle(const std::string& name) {
+  if (const Step taken = all_taken_in(); !taken) return taken;
+  const auto saved = save(name);  // it folds what is left, and says which revision that is
+  if (!saved) return tl::unexpected(saved.error());
+  return wait_for("the map", kSync, [&] { return copies_->map.synced() && copies_->map.revision() >= *saved; });
+}
+
+tl::expected<Path, Failure> DemoRun::plan() {
   const double end = now() + kSync;
   for (;;) {
     PathRequest request;
@@ -189,22 +223,22 @@ tl::expected<Path, Failure> DemoRun::plan(bool keep_active) {
     request.robot = scene_.agents.front().id;
     request.start = *scene_.start;
     request.goal = *scene_.goal;
-    request.keep_active = keep_active;
+    request.keep_active = true;
     auto path = request_path(*live_, request);
     if (!path) return path;
     // The planner copies the map as we do; it may be a moment behind.
     if (path->map_revision >= copies_->map.revision() || now() > end || end_requested()) {
-      if (keep_active) active_path_ = request.id;
+      active_path_ = request.id;
       return path;
     }
-    live_->wait(0.2, [] { return false; });
+    live_->wait(kAgain, end_requested);
   }
 }
 
 DemoRun::Step DemoRun::plan_before() {
   if (!scene_.start) return {};
   const double since = now();
-  auto path = plan(true);
+  auto path = plan();
   if (!path) return tl::unexpected(path.error());
   took("path_before", since);
   say("before the edit: " + to_words(*path));
@@ -234,15 +268,15 @@ DemoRun::Step DemoRun::edit() {
 DemoRun::Step DemoRun::plan_after() {
   if (!scene_.start || scene_.edit.empty()) return {};
   const double since = now();
-  const std::int64_t first = report_.path_before->plan_number;
-  if (report_.path_before->status == "OK") {
-    report_.replanned = live_->wait(kReplan, [&] {
-      const Path* latest = live_->path_for(active_path_);
-      return latest != nullptr && latest->plan_number > first;
-    });
-  }
-  auto path = plan(false);
+  const std::int64_t first = report_.path_before->plan_number, revision = copies_->map.revision();
+  const auto kept = [&] {
+    const Path* latest = live_->path_for(active_path_);
+    return latest != nullptr && latest->map_revision >= revision ? latest : nullptr;
+  };
+  const bool by_itself = live_->wait(kReplan, [&] { return kept() != nullptr; });
+  auto path = by_itself ? tl::expected<Path, Failure>(*kept()) : plan();
   if (!path) return tl::unexpected(path.error());
+  if (report_.path_before->status == "OK") report_.replanned = by_itself && path->plan_number > first;
   took("path_after", since);
   say("after the edit: " + to_words(*path));
   report_.path_after = std::move(*path);

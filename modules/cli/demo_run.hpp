@@ -44,8 +44,12 @@ class DemoRun {
   [[nodiscard]] Step check(const std::string& what) const;
   [[nodiscard]] Step wait_for(const std::string& what, double seconds, const std::function<bool()>& done);
   [[nodiscard]] Step align(const AgentState& state);
-  [[nodiscard]] Step settle();
-  [[nodiscard]] tl::expected<Path, Failure> plan(bool keep_active);
+  /// Until the map holds all that the agents sent, which is saved as `name`.
+  [[nodiscard]] Step settle(const std::string& name);
+  /// Until ingest has taken in all that it was sent, and merge that.
+  [[nodiscard]] Step all_taken_in();
+  [[nodiscard]] tl::expected<std::int64_t, Failure> save(const std::string& name);
+  [[nodiscard]] tl::expected<Path, Failure> plan();
   void note_moment();
   void say_progress() const;
   void score();
@@ -57,6 +61,7 @@ class DemoRun {
   DemoOptions options_;
   DemoFolder folder_;
   Common common_;
+  std::optional<FileLock> folder_lock_, stack_lock_;
   Supervisor::Clock::time_point began_ = Supervisor::Clock::now();
   DemoScene scene_;
   Supervisor supervisor_;

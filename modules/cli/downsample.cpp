@@ -65,6 +65,11 @@ Outcome downsample(const Options& options, const Common& common) {
   }
   if (!is_name(options.agent)) return bad_name(options.agent);
   Live live(common);
+  if (const double voxel = live.site().resolution; !(options.resolution >= voxel)) {
+    return fail(Exit::kUnusable, name(Code::kBadResolution),
+                "a cell of " + format_number(options.resolution, 3) + " m is smaller than a voxel; here these have " +
+                    format_number(voxel, 3) + " m");
+  }
   const auto points = request_cloud(live, {live.new_id(), options.agent, options.resolution});
   if (!points) return tl::unexpected(points.error());
   const auto written = write_file(options.out, extension == ".csv" ? as_csv(*points) : as_pcd(*points));

@@ -3,8 +3,11 @@
 #include <memory>
 #include <sstream>
 
+#include <nlohmann/json.hpp>
+
 #include "cli/arguments.hpp"
 #include "cli/live.hpp"
+#include "cli/numbers.hpp"
 #include "cli/report.hpp"
 #include "core/shape.hpp"
 #include "core/voxel_boxes.hpp"
@@ -68,13 +71,41 @@ Result<std::vector<VoxelIndex>> voxels_of(const Options& options, double resolut
   return read_voxels(options.file);
 }
 
+/// The corners of the box around the voxels, metres. @pre there are some.
+Box box_around(const std::vector<VoxelIndex>& voxels, double resolution) {
+  Box box{Eigen::Vector3d::Constant(kMaxVoxel), Eigen::Vector3d::Constant(-kMaxVoxel)};
+  for (const VoxelIndex& v : voxels) {
+    const Eigen::Vector3d low(v.x, v.y, v.z);
+    box = {box.min.cwiseMin(low), box.max.cwiseMax(low + Eigen::Vector3d::Ones())};
+  }
+  return {box.min * resolution, box.max * resolution};
+}
+
+std::string in_words(const Eigen::Vector3d& p) {
+  return "(" + format_number(p.x(), 2) + ", " + format_number(p.y(), 2) + ", " + format_number(p.z(), 2) + ")";
+}
+
+/// Where the pins are is said in any case: corners may be given in any order, and voxels in indices.
+void print_pinned(const Answer& answer, const Box& box, const Common& common) {
+  nlohmann::json object = to_json(answer);
+  object["id"] = answer.id;
+  object["box"] = {{"min", {box.min.x(), box.min.y(), box.min.z()}}, {"max", {box.max.x(), box.max.y(), box.max.z()}}};
+  common.print(object, answer.process + ": " + answer.message + ": " + format_count(answer.count) + " voxels from " +
+                           in_words(box.min) + " to " + in_words(box.max) + " m, edit " + answer.id);
+}
+
 Outcome edit(const Options& options, const Common& common) {
   auto voxels = voxels_of(options, common.site().resolution);
   if (!voxels) return fail(voxels.error());
+  if (voxels->empty()) return fail(Exit::kUnusable, name(Code::kEmpty), "there is no voxel to pin");
   Live live(common);
   const auto op = options.op == "add" ? EditRequest::Op::kAdd : EditRequest::Op::kDelete;
+  const Box box = box_around(*voxels, live.site().resolution);
   const EditRequest request{live.new_id(), author_or_user(options.author), op, std::move(*voxels), live.bus().now()};
-  return print_answer(live.ask("in/edit", encode(request, live.site().resolution), request.id), common);
+  const auto answer = live.ask("in/edit", encode(request, live.site().resolution), request.id);
+  if (!answer) return tl::unexpected(answer.error());
+  print_pinned(*answer, box, common);
+  return Exit::kDone;
 }
 
 }  // namespace
@@ -85,7 +116,8 @@ void add_edit(Program& program) {
                               [options](const Common& common) { return edit(*options, common); });
   pin.add_option("op", options->op, "add or delete")->required()->check(CLI::IsMember({"add", "delete"}));
   auto* what = pin.add_option_group("selection", "what is pinned, in metres and the map frame");
-  what->add_option("--box", options->box, "\"x0 y0 z0 x1 y1 z1\": every voxel that shares volume with it");
+  what->add_option("--box", options->box,
+                   "\"x0 y0 z0 x1 y1 z1\", two opposite corners: every voxel that shares volume with it");
   what->add_option("--line", options->line, "\"x y z x y z ...\": every voxel that it touches");
   what->add_option("--area", options->area, "\"x y z x y z ...\", a polygon: every voxel that it touches");
   what->add_option("--voxels", options->file, "a file with three indices a line, map lattice");

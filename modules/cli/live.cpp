@@ -2,7 +2,9 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "cli/end_request.hpp"
 
@@ -88,12 +90,39 @@ StreamCopy::StreamCopy(Live& live, const std::string& stream)
   live.hear<BrickDigest>(channels.digest, [this](const std::string&, const BrickDigest& d) { receiver_.on_digest(d); });
 }
 
-tl::expected<void, Failure> StreamCopy::wait_synced(Live& live) {
-  if (live.wait(live.timeout(), [this] { return synced(); })) return {};
+tl::expected<void, Failure> StreamCopy::wait_synced(Live& live, const std::function<bool()>& worth_it) {
+  live.wait(live.timeout(), [&] { return synced() || !worth_it(); });
+  if (synced()) return {};
   if (!heard()) return live.no_answer("the sender of " + stream_);
   return fail(Exit::kIncomplete, "INCOMPLETE",
               stream_ + " has not arrived whole: " + std::to_string(missing()) +
                   " versions are missing; give a longer --timeout");
+}
+
+tl::expected<void, Failure> wait_for_submap(Live& live, StreamCopy& copy, const std::string& agent) {
+  // Lists and idle streams both speak once a second: after some of one, nothing of the other means that it is not
+  // there.
+  constexpr int kLists = 3;
+  struct Heard {
+    int lists = 0;
+    std::optional<AgentState> state;
+  };
+  const auto heard = std::make_shared<Heard>();  // the subscription outlives this call
+  live.hear<AgentList>("out/agents", [heard, agent](const std::string&, const AgentList& list) {
+    const auto found = std::ranges::find(list.agents, agent, &AgentState::id);
+    heard->state = found != list.agents.end() ? std::optional(*found) : std::nullopt;
+    ++heard->lists;
+  });
+  const auto hopeless = [&] {
+    if (copy.heard() || heard->lists < kLists) return false;
+    return !heard->state || (heard->state->known == 0 && heard->state->revision == 0);
+  };
+  const auto synced = copy.wait_synced(live, [&] { return !hopeless(); });
+  if (copy.ended() || (hopeless() && !heard->state)) {
+    return fail(Exit::kRefused, name(Code::kNoAgent), "no agent " + agent + " is known; see: concord agents");
+  }
+  if (hopeless()) return fail(Exit::kRefused, name(Code::kNoMap), agent + " has sent no submap");
+  return synced;
 }
 
 tl::expected<Path, Failure> request_path(Live& live, const PathRequest& request) {

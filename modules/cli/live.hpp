@@ -79,15 +79,23 @@ class StreamCopy {
   [[nodiscard]] std::int64_t missing() const { return receiver_.missing(); }
   [[nodiscard]] std::int64_t revision() const { return receiver_.revision(); }
   [[nodiscard]] const BrickMap& map() const { return map_; }
+  /// In sync with a sender that has ended.
+  [[nodiscard]] bool ended() const { return synced() && receiver_.frame_id().empty(); }
 
-  /// Fails with kNoAnswer when nobody speaks, with kIncomplete when it did not arrive whole in time.
-  [[nodiscard]] tl::expected<void, Failure> wait_synced(Live& live);
+  /// Waits while `worth_it()`. Fails with kNoAnswer when nobody speaks, with kIncomplete when it did not arrive whole
+  /// in time.
+  [[nodiscard]] tl::expected<void, Failure> wait_synced(
+      Live& live, const std::function<bool()>& worth_it = [] { return true; });
 
  private:
   BrickMap map_;
   std::string stream_;
   BrickReceiver receiver_;
 };
+
+/// Waits for an agent's submap. Fails as StreamCopy::wait_synced does, and soon (kRefused) where there is none to wait
+/// for: no such agent (NO_AGENT), or one that has sent no submap (NO_MAP).
+[[nodiscard]] tl::expected<void, Failure> wait_for_submap(Live& live, StreamCopy& copy, const std::string& agent);
 
 /// Asks the running planner and prints the path.
 [[nodiscard]] Outcome ask_path(PathRequest request, const Common& common);

@@ -25,7 +25,8 @@ Outcome take(const Options& options, const Common& common, bool only_digest) {
   }
   Live live(common);
   StreamCopy copy(live, stream_of(options));
-  if (auto synced = copy.wait_synced(live); !synced) return tl::unexpected(synced.error());
+  const auto synced = options.agent.empty() ? copy.wait_synced(live) : wait_for_submap(live, copy, options.agent);
+  if (!synced) return tl::unexpected(synced.error());
   if (!options.out.empty()) {
     const auto saved = save_map(options.out, copy.map(), live.site().resolution);
     if (!saved) return fail(saved.error());

@@ -186,6 +186,14 @@ class Panel {
     line(38, name, value);
   }
 
+  void remark(const std::string& words) {
+    y_ += 4;
+    for (const std::string& line : page_.wrapped(words, 13, kPanel - 38)) {
+      y_ += 18;
+      page_.text(left_ + 38, y_, line, {13, false, kSoftInk});
+    }
+  }
+
   void number(const std::string& name, const std::string& value) {
     y_ += 25;
     line(0, name, value);
@@ -252,8 +260,12 @@ double draw_panel(Page& page, const Overview& overview, const MapArea& area, boo
   }
   if (overview.before || overview.after) {
     panel.section("PATH A TO B");
-    if (overview.before) panel.ribbon(kRed, true, "before the edit", told(*overview.before));
-    if (overview.after) panel.ribbon(kGreen, false, overview.before ? "after the edit" : "path", told(*overview.after));
+    const auto tell = [&](const Overview::Route& route, const Rgb& colour, bool dashed, const char* name) {
+      panel.ribbon(colour, dashed, name, told(route));
+      if (route.status != "OK") panel.remark(route.message);
+    };
+    if (overview.before) tell(*overview.before, kRed, true, overview.edit.empty() ? "path" : "before the edit");
+    if (overview.after) tell(*overview.after, kGreen, false, overview.before ? "after the edit" : "path");
   }
   if (!overview.features.empty()) {
     panel.section("FOUND");

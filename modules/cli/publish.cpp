@@ -39,6 +39,11 @@ tl::unexpected<Failure> frame_is_over(const Options& options) {
 
 tl::unexpected<Failure> not_arrived(const Options& options, const Delivery& delivery) {
   if (delivery.refusal() == name(Code::kBadFrame)) return frame_is_over(options);
+  if (delivery.refusal() == name(Code::kStale)) {
+    return fail(
+        Exit::kRefused, name(Code::kStale),
+        "another sender speaks as " + options.agent + " and started later; end it, or publish as another --agent");
+  }
   if (!delivery.refusal().empty()) {
     return fail(Exit::kRefused, delivery.refusal(),
                 "ingest refuses what " + options.agent + " sends, and has printed why");

@@ -143,7 +143,7 @@ class Light {
 
   [[nodiscard]] float at(int column, int row) const {
     const float here = height(column, row);
-    return (1.0F - 0.42F * closed_sky(column, row, here)) * (1.0F - 0.30F * shadow(column, row, here));
+    return (1.0F - 0.36F * closed_sky(column, row, here)) * (1.0F - 0.13F * shadow(column, row, here));
   }
 
   /// Low, and hardly above the lowest surface around: floors are uneven.
@@ -189,7 +189,7 @@ class Light {
   }
 
   [[nodiscard]] float shadow(int column, int row, float here) const {
-    constexpr float kSlope = 1.6F;  // rise over run of the sun
+    constexpr float kSlope = 2.4F;  // rise over run of the sun
     const int steps = std::min(48, static_cast<int>(1.6 / resolution_));
     float dark = 0;
     for (int step = 1; step <= steps; ++step) {

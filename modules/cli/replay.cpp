@@ -1,13 +1,13 @@
 #include "cli/replay.hpp"
 
-#include <cmath>
-#include <fstream>
+#include <array>
+#include <ctime>
 #include <memory>
 
 #include <nlohmann/json.hpp>
 
-#include "cli/live.hpp"
 #include "cli/numbers.hpp"
+#include "cli/replay_expected.hpp"
 
 namespace concord {
 namespace {
@@ -20,58 +20,47 @@ struct Options {
   std::string expect;
 };
 
-nlohmann::json to_json(const Replayed& replayed, bool live) {
+nlohmann::json to_json(const StreamGaps::Gap& gap) {
+  return {{"channel", gap.channel},
+          {"missing", gap.missing ? nlohmann::json(*gap.missing) : nlohmann::json()},
+          {"what", gap.what}};
+}
+
+nlohmann::json to_json(const LogCut& cut) {
+  return {{"whole_events", cut.whole_events}, {"byte", cut.byte}, {"bytes_lost", cut.bytes_lost}};
+}
+
+nlohmann::json to_json(const Replayed& replayed) {
   nlohmann::json gaps = nlohmann::json::array();
-  for (const StreamGaps::Gap& gap : replayed.gaps) gaps.push_back({{"channel", gap.channel}, {"missing", gap.missing}});
+  for (const StreamGaps::Gap& gap : replayed.gaps) gaps.push_back(to_json(gap));
   nlohmann::json results;
   for (const auto& [name, digest] : replayed.digests) results[name] = hex(digest);
   const std::string map = hex(replayed.digests.at("map"));
-  nlohmann::json object = {{"map_digest", map},
-                           {"results", results},
-                           {"gaps", gaps},
-                           {"messages", replayed.messages},
-                           {"seconds", replayed.seconds}};
-  if (!live) object["digest"] = map;
-  return object;
+  return {{"digest", map},
+          {"map_digest", map},
+          {"results", results},
+          {"gaps", gaps},
+          {"cut", replayed.cut ? to_json(*replayed.cut) : nlohmann::json()},
+          {"messages", replayed.messages},
+          {"seconds", replayed.seconds}};
 }
 
-/// What the file says must come out and did not.
-Result<std::vector<std::string>> differences(const std::filesystem::path& file, const nlohmann::json& result) {
-  std::ifstream in(file);
-  const auto expected = in ? nlohmann::json::parse(in, nullptr, false) : nlohmann::json();
-  if (!expected.is_object()) return refuse(Code::kIo, file.string() + " holds no JSON object");
-  std::vector<std::string> found;
-  const auto compare = [&](const std::string& name, const nlohmann::json& want, const nlohmann::json& have) {
-    if (want != have) found.push_back(name + " is " + have.dump() + ", expected " + want.dump());
-  };
-  std::size_t compared = 0;
-  for (const char* key : {"digest", "map_digest"}) {
-    if (!expected.contains(key) || !result.contains(key)) continue;
-    compare(key, expected[key], result[key]);
-    ++compared;
+std::string words(const Replayed& replayed, const nlohmann::json& result) {
+  std::string text = format_count(replayed.messages) + " messages in " + format_number(replayed.seconds, 0) +
+                     " s, map of " + format_count(static_cast<std::int64_t>(replayed.map_bricks)) + " bricks\n";
+  for (const auto& [name, digest] : replayed.digests)
+    text += name + std::string(12 - name.size(), ' ') + hex(digest) + "\n";
+  if (replayed.cut) {
+    text += "cut         the log breaks off within an event at byte " + std::to_string(replayed.cut->byte) + "; the " +
+            format_count(replayed.cut->whole_events) + " whole events before it were played, " +
+            format_count(static_cast<std::int64_t>(replayed.cut->bytes_lost)) + " bytes were not\n";
   }
-  // Live, paths depend on when the map reached the planner: only the map must be equal.
-  if (expected.contains("results") && result.contains("digest")) {
-    for (const auto& [key, want] : expected["results"].items()) {
-      compare(key, want, result["results"].value(key, nlohmann::json()));
-      ++compared;
-    }
+  for (const StreamGaps::Gap& gap : replayed.gaps) {
+    text +=
+        "gap         " + gap.channel + ": " + (gap.missing ? format_count(*gap.missing) + " " : "") + gap.what + "\n";
   }
-  if (compared == 0) return refuse(Code::kEmpty, file.string() + " says nothing of what a replay leads to");
-  return found;
-}
-
-std::string words(const nlohmann::json& result, const std::vector<std::string>& differing, std::size_t bricks) {
-  std::string text = result["messages"].dump() + " messages in " +
-                     std::to_string(std::lround(result["seconds"].get<double>())) + " s, map of " +
-                     std::to_string(bricks) + " bricks\n";
-  for (const auto& [name, digest] : result["results"].items()) {
-    text += name + std::string(12 - name.size(), ' ') + digest.get<std::string>() + "\n";
-  }
-  for (const auto& gap : result["gaps"]) {
-    text += "gap         " + gap["channel"].get<std::string>() + ": " + gap["missing"].dump() + " missing\n";
-  }
-  for (const std::string& line : differing) text += "different   " + line + "\n";
+  if (!result.contains("differences")) return text;
+  for (const auto& line : result["differences"]) text += "different   " + line.get<std::string>() + "\n";
   return text;
 }
 
@@ -85,38 +74,68 @@ Site site_of(const Options& options, const Common& common) {
 
 Outcome replay(const Options& options, const Common& common) {
   const Site site = site_of(options, common);
+  std::optional<Expected> expected;  // read first: a replay may take minutes
+  if (!options.expect.empty()) {
+    auto read = Expected::read(options.expect, options.live);
+    if (!read) return fail(read.error());
+    expected = std::move(*read);
+  }
   const auto replayed = options.live ? replay_live(options.log, site) : replay_lockstep(options.log, site);
   if (!replayed) return tl::unexpected(replayed.error());
-  nlohmann::json result = to_json(*replayed, options.live);
-  std::vector<std::string> differing;
-  if (!options.expect.empty()) {
-    auto found = differences(options.expect, result);
-    if (!found) return fail(found.error());
-    differing = std::move(*found);
-    result["differences"] = differing;
+  nlohmann::json result = to_json(*replayed);
+  bool differs = false;
+  if (expected) {
+    const std::vector<std::string> differences = expected->differences(result);
+    differs = !differences.empty();
+    result["differences"] = differences;
   }
-  common.print(result, words(result, differing, replayed->map_bricks));
-  if (!replayed->gaps.empty()) return Exit::kIncomplete;
-  return differing.empty() ? Exit::kDone : Exit::kNegative;
+  common.print(result, words(*replayed, result));
+  if (!replayed->gaps.empty() || replayed->cut) return Exit::kIncomplete;
+  return differs ? Exit::kNegative : Exit::kDone;
+}
+
+/// "2026-11-22 07:15:00.123456 UTC", as `date` reads it.
+std::string date(std::int64_t utime) {
+  const std::time_t seconds = utime / 1'000'000;
+  std::tm day = {};
+  if (gmtime_r(&seconds, &day) == nullptr) return "microsecond " + std::to_string(utime);
+  std::array<char, 64> text;
+  const std::size_t size = std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M:%S", &day);
+  std::string fraction = std::to_string(1'000'000 + utime % 1'000'000);
+  fraction[0] = '.';
+  return std::string(text.data(), size) + fraction + " UTC";
 }
 
 }  // namespace
 
-Result<void> each_input(const std::filesystem::path& log, const std::function<void(const LogEvent&)>& take) {
+Result<std::optional<LogCut>> each_input(const std::filesystem::path& log,
+                                         const std::function<void(const LogEvent&)>& take) {
   auto reader = LogReader::open(log);
   if (!reader) return tl::unexpected(reader.error());
-  std::int64_t latest = -1;
+  std::int64_t latest = -1, taken = 0;
   while (true) {
+    const std::uintmax_t begin = reader->at();
     const auto event = reader->next();
     if (!event) return tl::unexpected(event.error());
-    if (!*event) return {};
+    if (!*event) break;
     const std::int64_t utime = (*event)->utime;
     if (latest >= 0 && utime - latest > kLongestJump) {
-      return refuse(Code::kMalformed, log.string() + ": its clock jumps by more than a day; cut it there");
+      return refuse(Code::kMalformed, log.string() + ": its clock jumps by more than a day at event " +
+                                          std::to_string(reader->events()) + ", byte " + std::to_string(begin) +
+                                          ": from " + date(latest) + " to " + date(utime) + "; cut it there: head -c " +
+                                          std::to_string(begin) + " LOG >BEFORE");
     }
     latest = std::max(latest, utime);
-    if ((*event)->channel.starts_with("in/") && is_channel((*event)->channel)) take(**event);
+    if (!(*event)->channel.starts_with("in/") || !is_channel((*event)->channel)) continue;
+    take(**event);
+    ++taken;
   }
+  if (taken > 0) return reader->cut();
+  const std::int64_t events = reader->events();
+  return refuse(
+      Code::kEmpty,
+      log.string() + " holds nothing to play: " +
+          (events == 0 ? "no whole event" : "none of its " + format_count(events) + " events is on an in/ channel"));
 }
 
 void Reading::hear(const LogEvent& event) {

@@ -19,6 +19,7 @@ namespace concord {
 struct Replayed {
   std::map<std::string, std::uint64_t> digests;  ///< see StackWatch
   std::vector<StreamGaps::Gap> gaps;
+  std::optional<LogCut> cut;  ///< all whole events before it were played
   std::int64_t messages = 0;
   double seconds = 0;  ///< from the first to the last
   std::size_t map_bricks = 0;
@@ -46,10 +47,11 @@ class Reading {
 /// their own. Ends with the same map as `replay_lockstep`.
 [[nodiscard]] tl::expected<Replayed, Failure> replay_live(const std::filesystem::path& log, Site site);
 
-/// Reads a log from front to back: `take(event)` gets each message on an `in/` channel.
-/// Refused: what LogReader refuses, and a log whose clock jumped by more than a day.
-[[nodiscard]] Result<void> each_input(const std::filesystem::path& log,
-                                      const std::function<void(const LogEvent&)>& take);
+/// Reads a log from front to back: `take(event)` gets each message on an `in/` channel. Returns where the log is cut,
+/// if it is. Refused: what LogReader refuses, a log whose clock jumped by more than a day, and one with nothing to take
+/// (kEmpty).
+[[nodiscard]] Result<std::optional<LogCut>> each_input(const std::filesystem::path& log,
+                                                       const std::function<void(const LogEvent&)>& take);
 
 void add_replay(Program& program);
 

@@ -47,7 +47,10 @@ class LiveStack {
 
   [[nodiscard]] Result<void> start() {
     if (auto written = write_file(site_.state / "site.yaml", to_yaml(site_)); !written) return written;
-    return start_stack(supervisor_, {site_.state / "site.yaml", site_.lcm_url, {}, site_.state});
+    auto started = start_stack(supervisor_, {site_.state / "site.yaml", site_.lcm_url, site_.state, {}, site_.state});
+    if (!started) return tl::unexpected(started.error());
+    stack_lock_ = std::move(*started);
+    return {};
   }
   [[nodiscard]] Result<void> play(const std::filesystem::path& log) {
     return supervisor_.start({.name = "lcm-logplayer",
@@ -74,6 +77,7 @@ class LiveStack {
 
  private:
   const Site& site_;
+  std::optional<FileLock> stack_lock_;
   Supervisor supervisor_;
   Counters counters_;
   LcmBus bus_;
@@ -93,11 +97,11 @@ tl::unexpected<Failure> not_awake(const LiveStack& stack) {
 tl::expected<Replayed, Failure> replay_live(const std::filesystem::path& log, Site site) {
   Reading reading(site.resolution);
   // Read whole before anything is started: a log that is no log is refused at once.
-  if (const auto read = each_input(log, [&](const LogEvent& event) { reading.hear(event); }); !read) {
-    return fail(read.error());
-  }
+  const auto read = each_input(log, [&](const LogEvent& event) { reading.hear(event); });
+  if (!read) return fail(read.error());
   Replayed replayed;
   reading.into(replayed);
+  replayed.cut = *read;
 
   const TemporaryFolder folder("concord-replay");
   site.state = folder.path();

@@ -71,10 +71,10 @@ tl::expected<Replayed, Failure> replay_lockstep(const std::filesystem::path& log
       stack->hear(event);
     });
     if (!read) return fail(read.error());
-    if (!stack) stack.emplace(site, 1);
     if (!stack->run_out()) return fail(Exit::kIncomplete, "NOT_QUIET", "the stack did not come to rest after the log");
     Replayed replayed;
     reading.into(replayed);
+    replayed.cut = *read;
     replayed.digests = stack->watch().digests();
     replayed.map_bricks = stack->watch().map_bricks();
     return replayed;

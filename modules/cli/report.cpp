@@ -85,7 +85,7 @@ Exit print_path(const Path& path, const Common& common) {
 }
 
 Overview::Route to_route(const Path& path) {
-  Overview::Route route{path.status, {}, path.length};
+  Overview::Route route{path.status, {}, path.length, path.message};
   for (const Eigen::Vector3d& p : path.points) route.points.emplace_back(p.head<2>());
   return route;
 }

@@ -24,7 +24,14 @@ Outcome ask(MapRequest request, const Common& common) {
   }
   Live live(common);
   request.id = live.new_id();
-  return print_answer(live.ask("in/map_request", encode(request, live.bus().now()), request.id), common);
+  const auto answer = live.ask("in/map_request", encode(request, live.bus().now()), request.id);
+  if (!answer || request.op != MapRequest::Op::kLoad) return print_answer(answer, common);
+  const std::string& agent = request.agent.empty() ? request.map : request.agent;
+  nlohmann::json object = to_json(*answer);
+  object["agent"] = agent;
+  common.print(
+      object, answer->process + ": " + answer->message + ": concord set-transform " + agent + " \"x y z qx qy qz qw\"");
+  return Exit::kDone;
 }
 
 Outcome list_maps(const Common& common) {

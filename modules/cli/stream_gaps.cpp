@@ -1,5 +1,7 @@
 #include "cli/stream_gaps.hpp"
 
+#include <algorithm>
+
 namespace concord {
 namespace {
 
@@ -7,6 +9,17 @@ constexpr std::int64_t kMostClouds = std::int64_t{1} << 60;  // sums do not over
 
 /// X of "X/bricks".
 std::string before_last_slash(const std::string& channel) { return channel.substr(0, channel.rfind('/')); }
+
+/// What an unsynced stream lacks.
+StreamGaps::Gap gap_in(const std::string& channel, const BrickReceiver& receiver) {
+  if (!receiver.heard()) {
+    return {channel, std::nullopt, "nothing of it can be taken: it has another resolution than the site"};
+  }
+  if (const std::int64_t missing = receiver.missing(); missing > 0) {
+    return {channel, missing, "versions were announced and never recorded"};
+  }
+  return {channel, std::nullopt, "no digest of it was recorded, so nobody knows whether it is whole"};
+}
 
 }  // namespace
 
@@ -42,20 +55,21 @@ void StreamGaps::hear(std::int64_t utime, const std::string& channel, std::span<
 }
 
 std::vector<StreamGaps::Gap> StreamGaps::gaps() const {
-  std::map<std::string, std::int64_t> missing = unreadable_;
+  std::vector<Gap> gaps;
+  for (const auto& [channel, count] : unreadable_) {
+    gaps.push_back({channel, count, "messages cannot be read: damaged, or of another release"});
+  }
   for (const auto& [stream, receiver] : streams_) {
-    // One that was never heard has another resolution than the site: nothing of it was taken.
-    if (!receiver->synced()) missing[stream + "/bricks"] = receiver->missing();
+    if (!receiver->synced()) gaps.push_back(gap_in(stream + "/bricks", *receiver));
   }
   for (const auto& [channel, clouds] : clouds_) {
     std::int64_t count = 0;
     for (const auto& [boot_id, heard] : clouds.heard.at(clouds.frame_id)) {
       for (const auto& [first, last] : heard.missing(heard.highest())) count += last - first + 1;
     }
-    if (count > 0) missing[channel] = count;
+    if (count > 0) gaps.push_back({channel, count, "clouds were sent and never recorded"});
   }
-  std::vector<Gap> gaps;
-  for (const auto& [channel, count] : missing) gaps.push_back({channel, count});
+  std::ranges::stable_sort(gaps, {}, &Gap::channel);
   return gaps;
 }
 

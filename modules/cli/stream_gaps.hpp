@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,8 @@ class StreamGaps {
  public:
   struct Gap {
     std::string channel;
-    std::int64_t missing = 0;  ///< versions, clouds or unreadable messages; 0: how much there was is not known either
+    std::optional<std::int64_t> missing;  ///< how many; absent where nobody can know
+    std::string what;                     ///< is missing, in words that follow the number
   };
 
   /// @pre `start` is not after the first message.
@@ -26,7 +28,7 @@ class StreamGaps {
 
   void hear(std::int64_t utime, const std::string& channel, std::span<const std::uint8_t> bytes);
 
-  /// Sorted by channel. What was made void (a frame that was left) counts no more.
+  /// Sorted by channel; one may have several. What was made void (a frame that was left) counts no more.
   [[nodiscard]] std::vector<Gap> gaps() const;
 
  private:

@@ -2,14 +2,8 @@
 
 namespace concord {
 
-Result<void> AgentStreams::check_room(std::size_t agents) const {
-  if (made_ + static_cast<std::int64_t>(2 * agents) <= kMaxMade) return {};
-  return refuse(Code::kTooLarge, "too many agents have come and gone; restart ingest");
-}
-
 std::unique_ptr<BrickSender> AgentStreams::make(const std::string& id, const BrickMap& layer,
                                                 std::int64_t incarnation) {
-  ++made_;
   // An id may have had a stream before, in this start or an earlier one: the time is an epoch greater than all of its.
   const BrickSender::Config config{"out/agent/" + id, resolution_, pace_, bus_.now(), incarnation};
   return std::make_unique<BrickSender>(bus_, counters_, config, layer);

@@ -15,14 +15,8 @@ namespace concord {
 /// that it has ended, so that who was not listening is told as well.
 class AgentStreams {
  public:
-  /// A bus never forgets a subscription; so the number of streams made since the start is bounded.
-  static constexpr int kMaxMade = 2000;
-
   AgentStreams(Bus& bus, Counters& counters, double resolution, double bytes_per_second, std::size_t max_ended)
       : bus_(bus), counters_(counters), resolution_(resolution), pace_(bytes_per_second), max_ended_(max_ended) {}
-
-  /// Whether so many further agents can be given a stream, and be ended again. Refused: kTooLarge.
-  [[nodiscard]] Result<void> check_room(std::size_t agents) const;
 
   /// The agent is new, or changed. Its layer must stay where it is in memory until end().
   void tell(const std::string& id, const Agent& agent, const Change& change);
@@ -40,7 +34,6 @@ class AgentStreams {
   double resolution_;
   double pace_;
   std::size_t max_ended_;
-  int made_ = 0;
   const BrickMap nothing_{};
   std::map<std::string, std::unique_ptr<BrickSender>> live_;
   std::deque<std::pair<std::string, std::unique_ptr<BrickSender>>> ended_;  ///< oldest first

@@ -19,10 +19,10 @@ constexpr double kRoomAgain = 0.1;
 constexpr std::int64_t kCountPeriod = 1'000'000;
 /// A brick stream speaks each second while its sender lives.
 constexpr std::int64_t kStreamSilence = 3'000'000;
-/// A bus never forgets a timer; so their number is bounded, also for ids that never send anything good.
-constexpr int kMaxReceiversMade = 2000;
+/// Ids that never send anything good have a receiver too, until they are silent.
+constexpr std::size_t kMaxReceivers = 2000;
 /// Of these, for ids that are known: strangers must not shut them out.
-constexpr int kReceiversForKnown = 1000;
+constexpr std::size_t kReceiversForKnown = 1000;
 constexpr std::int64_t kMostLostCounted = 1'000'000;  // a hostile number must not overflow a sum
 
 /// AGENT of `in/AGENT/...`.
@@ -89,16 +89,14 @@ void IngestNode::subscribe() {
   bus_.every(kCountPeriod, [this] {
     count();
     ask_again_where_there_is_room();
+    forget_silent_strangers();
   });
 }
 
-/// The core's rules, and those that hang on time and on what the bus can bear.
+/// The core's rules, and one that hangs on time.
 Result<void> IngestNode::admit(const std::string& id, const std::string& frame_id, Source source) const {
   if (auto ok = ingest_.admit(id, frame_id, source); !ok) return ok;
   const Agent* agent = ingest_.find(id);
-  if (agent == nullptr) {
-    if (auto room = streams_.check_room(1); !room) return room;
-  }
   const auto input = inputs_.find(id);
   const bool streaming = agent != nullptr && agent->source == Source::kStream && input != inputs_.end() &&
                          bus_.now() - input->second.last_heard < kStreamSilence;
@@ -131,8 +129,8 @@ BrickReceiver* IngestNode::receiver_of(const std::string& channel, const std::st
   auto it = inputs_.find(id);
   if (it == inputs_.end()) {
     const bool is_known = ingest_.find(id) != nullptr || site_.agents.contains(id);
-    if (receivers_made_ >= kMaxReceiversMade - (is_known ? 0 : kReceiversForKnown)) {
-      counters_.refused(channel, {Code::kTooLarge, "too many streams have come and gone; restart ingest"});
+    if (inputs_.size() >= kMaxReceivers - (is_known ? 0 : kReceiversForKnown)) {
+      counters_.refused(channel, {Code::kTooLarge, "too many ids send at once; name this one in the site file"});
       return nullptr;
     }
     it = inputs_.emplace(id, Input{make_receiver(id), 0}).first;
@@ -160,7 +158,6 @@ std::unique_ptr<BrickReceiver> IngestNode::make_receiver(const std::string& id) 
     store_.note(id, index);
     streams_.touch(id, index);
   };
-  ++receivers_made_;
   const BrickReceiver::Config config{.stream = "in/" + id, .resolution = site_.resolution};
   return std::make_unique<BrickReceiver>(bus_, counters_, config, std::move(events));
 }
@@ -230,11 +227,19 @@ void IngestNode::ask_again_where_there_is_room() {
   const auto enough = static_cast<std::int64_t>((1 - kRoomAgain) * static_cast<double>(site_.ingest.max_known_voxels));
   for (auto& [id, input] : inputs_) {
     const Agent* agent = ingest_.find(id);
-    if (!input.lacking || agent == nullptr || agent->known() > enough || receivers_made_ >= kMaxReceiversMade) continue;
+    if (!input.lacking || agent == nullptr || agent->known() > enough) continue;
     input.receiver = make_receiver(id);
     input.receiver->adopt(agent->frame_id, agent->layer);
     input.lacking = false;
   }
+}
+
+/// A receiver without an agent holds nothing that its sender would not send again.
+void IngestNode::forget_silent_strangers() {
+  std::erase_if(inputs_, [this](const auto& entry) {
+    const auto& [id, input] = entry;
+    return ingest_.find(id) == nullptr && bus_.now() - input.last_heard >= kStreamSilence;
+  });
 }
 
 }  // namespace concord

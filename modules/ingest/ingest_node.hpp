@@ -50,6 +50,7 @@ class IngestNode {
   [[nodiscard]] BrickReceiver* receiver_of(const std::string& channel, const std::string& frame_id);
   [[nodiscard]] std::unique_ptr<BrickReceiver> make_receiver(const std::string& id);
   void ask_again_where_there_is_room();
+  void forget_silent_strangers();
   void changed(const std::string& id, const Change& change);
 
   void on_agent_request(const std::string& channel, const AgentRequest& request);
@@ -57,11 +58,10 @@ class IngestNode {
   void on_downsample(const std::string& channel, const DownsampleRequest& request);
   [[nodiscard]] Result<std::int64_t> reset(const std::string& id);
   [[nodiscard]] Result<std::int64_t> remove(const std::string& id);
-  [[nodiscard]] Result<std::int64_t> load(const MapRequest& request);
   [[nodiscard]] Result<std::int64_t> load_octomap(const MapRequest& request, const std::filesystem::path& file);
   [[nodiscard]] Result<std::int64_t> load_archive(const MapRequest& request, const std::filesystem::path& file);
   [[nodiscard]] Result<std::int64_t> downsample(const DownsampleRequest& request);
-  [[nodiscard]] Answer answer_to(const std::string& id, const Result<std::int64_t>& count, const char* done);
+  [[nodiscard]] Answer answer_to(const std::string& id, const Result<std::int64_t>& count, const std::string& done);
 
   void write_some();
   void count();
@@ -78,7 +78,6 @@ class IngestNode {
   std::map<std::string, Input> inputs_;
   std::map<std::string, std::int64_t> said_over_;  ///< when an agent was last told that its frame is over
   std::int64_t write_at_ = 0;                      ///< not before this time
-  int receivers_made_ = 0;
 };
 
 }  // namespace concord

@@ -39,9 +39,11 @@ Result<MapFile> find_map(const std::filesystem::path& folder, const MapRequest& 
   return refuse(Code::kNoMap, "no saved map is called " + request.map + "; concord maps lists them");
 }
 
+const std::string& loaded_as(const MapRequest& request) { return request.agent.empty() ? request.map : request.agent; }
+
 }  // namespace
 
-Answer IngestNode::answer_to(const std::string& id, const Result<std::int64_t>& count, const char* done) {
+Answer IngestNode::answer_to(const std::string& id, const Result<std::int64_t>& count, const std::string& done) {
   if (count) return {id, process_, true, "OK", done, 0, *count};
   counters_.refused("request", count.error());
   return {id, process_, false, name(count.error().code), count.error().message, 0, 0};
@@ -59,9 +61,13 @@ void IngestNode::on_map_request(const std::string&, const MapRequest& request) {
   if (request.op != MapRequest::Op::kLoad) return;
   const std::uint64_t content = content_of(request);
   if (answers_.repeat(request.id, process_, content)) return;
-  answers_.give(
-      answer_to(request.id, load(request), "loaded; its agents wait to be aligned where the map does not say how"),
-      content);
+  const auto file = find_map(site_.state / "maps", request);
+  if (!file) return answers_.give(answer_to(request.id, tl::unexpected(file.error()), ""), content);
+  const Answer answer = file->is_archive ? answer_to(request.id, load_archive(request, file->path),
+                                                     "loaded; its agents lie where the map says")
+                                         : answer_to(request.id, load_octomap(request, file->path),
+                                                     "loaded; agent " + loaded_as(request) + " waits to be aligned");
+  answers_.give(answer, content);
 }
 
 /// Done again when it is asked again: parts may have been lost. Not while they are on their way.
@@ -106,14 +112,8 @@ Result<std::int64_t> IngestNode::remove(const std::string& id) {
 }
 
 /// Nothing changes before it is on disk; so neither does anything after a refusal.
-Result<std::int64_t> IngestNode::load(const MapRequest& request) {
-  const auto file = find_map(site_.state / "maps", request);
-  if (!file) return tl::unexpected(file.error());
-  return file->is_archive ? load_archive(request, file->path) : load_octomap(request, file->path);
-}
-
 Result<std::int64_t> IngestNode::load_octomap(const MapRequest& request, const std::filesystem::path& file) {
-  const std::string& id = request.agent.empty() ? request.map : request.agent;
+  const std::string& id = loaded_as(request);
   if (auto ok = admit(id, request.map, Source::kFile); !ok) return tl::unexpected(ok.error());
   const auto bytes = read_whole_file(file, OctomapLimits{}.bytes);
   if (!bytes) return tl::unexpected(bytes.error());
@@ -137,7 +137,6 @@ Result<std::int64_t> IngestNode::load_archive(const MapRequest& request, const s
   if (const auto known = ingest_.loaded(incarnation)) return *known;
   auto agents = ingest_.from_archive(*bytes, request.id);
   if (!agents) return tl::unexpected(agents.error());
-  if (auto room = streams_.check_room(agents->size()); !room) return tl::unexpected(room.error());
   if (auto done = store_.add(*agents); !done) return tl::unexpected(done.error());
   for (auto& [id, agent] : *agents) {
     const Change change = ingest_.put(id, std::move(agent));

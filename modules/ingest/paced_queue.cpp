@@ -12,9 +12,8 @@ constexpr std::int64_t kStep = 5'000;
 
 PacedQueue::PacedQueue(Bus& bus, double bytes_per_second)
     : bus_(bus), bytes_per_step_(bytes_per_second * static_cast<double>(kStep) * 1e-6) {
-  bus_.every(kStep, [this, alive = std::weak_ptr(alive_)] {
-    if (!alive.expired()) send_some();
-  });
+  bus_.every(
+      kStep, [this] { send_some(); }, alive_);
 }
 
 void PacedQueue::push(const std::string& request, std::string channel, Bytes bytes) {

@@ -35,7 +35,7 @@ class PacedQueue {
   double budget_ = 0;  ///< bytes that may be sent now; below 0 after a message larger than the budget was
   std::deque<Message> queue_;
   std::map<std::string, std::size_t> waiting_;                  ///< messages in the queue, by request
-  std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  ///< timers of the bus outlive this
+  std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  ///< owns the timer
 };
 
 }  // namespace concord

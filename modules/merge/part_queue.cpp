@@ -9,9 +9,8 @@ constexpr std::int64_t kStep = 5'000;
 
 PartQueue::PartQueue(Bus& bus, double bytes_per_second) : bus_(bus), bytes_per_second_(bytes_per_second) {
   bus_.pace().join(alive_, [this] { return send_one(); });
-  bus_.every(kStep, [this, alive = std::weak_ptr(alive_)] {
-    if (!alive.expired()) send_now();
-  });
+  bus_.every(
+      kStep, [this] { send_now(); }, alive_);
 }
 
 void PartQueue::send_now() {

@@ -1,4 +1,5 @@
 #include "cli/replay.hpp"
+#include "cli/replay_expected.hpp"
 
 #include <gtest/gtest.h>
 
@@ -27,8 +28,9 @@ class ReplayTest : public testing::Test {
     write_log(file, events);
     return file;
   }
-  Replayed replay(const std::vector<LogEvent>& events) {
-    auto replayed = replay_lockstep(write(events), Site{});
+  Replayed replay(const std::vector<LogEvent>& events) { return replay(write(events)); }
+  Replayed replay(const std::filesystem::path& log) {
+    auto replayed = replay_lockstep(log, Site{});
     EXPECT_TRUE(replayed) << (replayed ? "" : replayed.error().message);
     return replayed ? *replayed : Replayed{};
   }
@@ -43,6 +45,8 @@ class ReplayTest : public testing::Test {
     const int exit = program.run(static_cast<int>(argv.size()), argv.data());
     return {exit, nlohmann::json::parse(testing::internal::GetCapturedStdout())};
   }
+
+  static std::string message(const nlohmann::json& result) { return result["error"]["message"]; }
 
   TemporaryFolder folder_{"replay-test"};
   int logs_ = 0;
@@ -148,6 +152,8 @@ TEST_F(ReplayTest, streams_of_another_resolution_than_the_sites_are_named) {
   ASSERT_EQ(result["gaps"].size(), 2U);
   EXPECT_EQ(result["gaps"][0]["channel"], "in/robot1/bricks");
   EXPECT_EQ(result["gaps"][1]["channel"], "in/robot2/bricks");
+  EXPECT_TRUE(result["gaps"][0]["missing"].is_null()) << "no number: none of it was taken";
+  EXPECT_NE(result["gaps"][0]["what"].get<std::string>().find("resolution"), std::string::npos);
 }
 
 TEST_F(ReplayTest, expectations_are_compared) {
@@ -165,11 +171,42 @@ TEST_F(ReplayTest, expectations_are_compared) {
   const auto [differs, differences] = run({log, "--expect", expect});
   EXPECT_EQ(differs, 1);
   EXPECT_EQ(differences["differences"].size(), 1U);
+}
 
-  std::ofstream(expect) << "{}";
-  EXPECT_EQ(run({log, "--expect", expect}).first, 2);
-  std::ofstream(expect) << "nonsense";
-  EXPECT_EQ(run({log, "--expect", expect}).first, 2);
+TEST_F(ReplayTest, an_expectation_that_cannot_be_read_fails_before_the_log_is_looked_at) {
+  const auto expect = folder_.path() / "expect.json";
+  for (const char* text : {"{}", "nonsense", "[1]", "{\"results\": 3}"}) {
+    std::ofstream(expect) << text;
+    const auto [exit, result] = run({"no-such-log", "--expect", expect});
+    EXPECT_EQ(exit, 2);
+    EXPECT_NE(message(result).find("expect.json"), std::string::npos) << message(result);
+  }
+  EXPECT_NE(message(run({"no-such-log", "--expect", "none.json"}).second).find("none.json"), std::string::npos);
+}
+
+TEST_F(ReplayTest, live_only_the_map_is_compared) {
+  const auto file = folder_.path() / "expect.json";
+  std::ofstream(file) << R"({"results": {"map": "1", "paths": "2"}})";
+  const nlohmann::json result = {{"results", {{"map", "1"}, {"paths", "3"}}}};
+  EXPECT_TRUE(Expected::read(file, true).value().differences(result).empty());
+  EXPECT_EQ(Expected::read(file, false).value().differences(result).size(), 1U);
+  std::ofstream(file) << R"({"results": {"paths": "2"}})";
+  EXPECT_EQ(Expected::read(file, true).error().code, Code::kEmpty);
+}
+
+TEST_F(ReplayTest, of_a_cut_log_all_whole_events_are_played_and_the_place_is_named) {
+  const std::vector<LogEvent>& events = session();
+  const auto log = write(events), without_last = write({events.begin(), events.end() - 1});
+  const auto whole = std::filesystem::file_size(without_last);
+  std::filesystem::resize_file(log, whole + 40);  // within the last event's channel or data
+  const auto [exit, result] = run({log});
+  EXPECT_EQ(exit, 4);
+  EXPECT_EQ(result["cut"]["whole_events"], events.size() - 1);
+  EXPECT_EQ(result["cut"]["byte"], whole);
+  EXPECT_EQ(result["cut"]["bytes_lost"], 40);
+  EXPECT_EQ(result["messages"], events.size() - 1);
+  EXPECT_EQ(replay(log).digests, replay(without_last).digests);
+  EXPECT_TRUE(run({without_last}).second["cut"].is_null());
 }
 
 TEST_F(ReplayTest, what_is_no_log_is_refused) {
@@ -177,15 +214,31 @@ TEST_F(ReplayTest, what_is_no_log_is_refused) {
   EXPECT_EQ(run({file}).first, 2);
   std::ofstream(file) << "this is no log, but it is longer than a header";
   EXPECT_EQ(run({file}).first, 2);
-  std::vector<LogEvent> jump = {session()[0], session()[1]};
-  jump[1].utime += std::int64_t{48} * 3600 * 1'000'000;
-  EXPECT_EQ(run({write(jump)}).first, 2);
 }
 
-TEST_F(ReplayTest, an_empty_log_gives_an_empty_map) {
-  const Replayed replayed = replay({});
-  EXPECT_EQ(replayed.map_bricks, 0U);
-  EXPECT_EQ(replayed.digests.at("map"), 0U);
+TEST_F(ReplayTest, a_clock_that_jumps_is_refused_with_its_place) {
+  std::vector<LogEvent> jump = {session()[0], session()[1]};
+  const auto before = write({jump[0]});
+  jump[1].utime = jump[0].utime + std::int64_t{48} * 3600 * 1'000'000;
+  const auto [exit, result] = run({write(jump)});
+  EXPECT_EQ(exit, 2);
+  const std::string said = message(result);
+  EXPECT_NE(said.find("event 2, byte " + std::to_string(std::filesystem::file_size(before))), std::string::npos)
+      << said;
+  EXPECT_NE(said.find("from 2023-11-14 22:13:20.000000 UTC to 2023-11-16 22:13:20.000000 UTC"), std::string::npos)
+      << said;
+}
+
+TEST_F(ReplayTest, a_log_with_nothing_to_play_is_refused) {
+  std::vector<LogEvent> out = {session()[0]};
+  out[0].channel = "out/map/bricks";
+  const auto beginning = write({session()[0]});
+  std::filesystem::resize_file(beginning, 40);
+  for (const auto& log : {write({}), write(out), beginning}) {
+    const auto [exit, result] = run({log});
+    EXPECT_EQ(exit, 2);
+    EXPECT_NE(message(result).find("holds nothing to play"), std::string::npos) << message(result);
+  }
 }
 
 }  // namespace

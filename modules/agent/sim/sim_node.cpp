@@ -95,15 +95,17 @@ void SimNode::publish_changes() {
 
 void SimNode::report() {
   const double share = std::min(self_->next_time() / self_->duration(), 1.0);
-  counters_.set("progress_percent", static_cast<std::int64_t>(100 * share));
+  counters_.set("progress_percent",
+                std::min(static_cast<std::int64_t>(100 * share), std::int64_t{all_sent() ? 100 : 99}));
   counters_.set("scans", scans_);
   counters_.set("frames", frames_);
   counters_.set("bytes_sent", submap_out_ ? submap_out_->bytes_sent() : cloud_out_->bytes_sent());
 }
 
+bool SimNode::all_sent() const { return changed_.empty() && (!submap_out_ || submap_out_->idle()); }
+
 void SimNode::leave_when_all_is_sent() {
-  const bool done = self_->next_time() > self_->duration() && changed_.empty() && (!submap_out_ || submap_out_->idle());
-  if (!done) {
+  if (self_->next_time() <= self_->duration() || !all_sent()) {
     idle_since_ = 0;
   } else if (idle_since_ == 0) {
     idle_since_ = bus_.now();

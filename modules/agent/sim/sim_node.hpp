@@ -31,6 +31,7 @@ class SimNode {
   void map(const Moment& moment);
   void publish_changes();
   void report();
+  [[nodiscard]] bool all_sent() const;
   void leave_when_all_is_sent();
 
   Bus& bus_;

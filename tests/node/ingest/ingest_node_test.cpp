@@ -180,6 +180,8 @@ TEST_F(IngestNodeTest, strangers_without_content_do_not_shut_out_a_robot_of_the_
   start_->run(2);
   EXPECT_EQ(start_->follower["robot1"].map, some_map(3));
   EXPECT_TRUE(start_->follower["stranger"].map.empty());
+  start_->run(4);
+  EXPECT_EQ(start_->follower["stranger"].map, some_map(3)) << "those who are silent are forgotten";
 }
 
 TEST_F(IngestNodeTest, no_bytes_harm_it) {

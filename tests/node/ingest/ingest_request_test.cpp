@@ -40,17 +40,19 @@ TEST_F(IngestRequestTest, a_reset_drops_the_layer_and_waits_for_a_new_frame) {
 class HardOfHearing final : public Bus {
  public:
   explicit HardOfHearing(Bus& air) : air_(air) {}
-  using Bus::subscribe;
-  void subscribe(const std::string& channel_regex, Handler handler, int queued) override {
+  using Bus::every, Bus::subscribe;
+  void subscribe(const std::string& channel_regex, Handler handler, int queued, Owner owner) override {
     const auto hear = [this, handler](const std::string& channel, auto bytes) {
       if (!channel.starts_with("out/frame_over/") || said_over++ > 0) handler(channel, bytes);
     };
-    air_.subscribe(channel_regex, hear, queued);
+    air_.subscribe(channel_regex, hear, queued, std::move(owner));
   }
   void publish(const std::string& channel, std::span<const std::uint8_t> bytes) override {
     air_.publish(channel, bytes);
   }
-  void every(std::int64_t period, Task task) override { air_.every(period, std::move(task)); }
+  void every(std::int64_t period, Task task, Owner owner) override {
+    air_.every(period, std::move(task), std::move(owner));
+  }
   [[nodiscard]] std::int64_t now() const override { return air_.now(); }
 
   int said_over = 0;
@@ -200,6 +202,7 @@ TEST_F(IngestRequestTest, a_saved_map_becomes_an_agent_that_stays) {
   MapRequest request{"q1", MapRequest::Op::kLoad, "hall", "", false, ""};
   const Answer answer = start_->ask(request);
   EXPECT_TRUE(answer.ok) << answer.message;
+  EXPECT_EQ(answer.message, "loaded; agent hall waits to be aligned");
   EXPECT_EQ(answer.count, static_cast<std::int64_t>(some_map(40).known_count()));
   EXPECT_EQ(start_->follower["hall"].map, some_map(40));
   EXPECT_EQ(start_->follower["hall"].frame_id, "map-hall");

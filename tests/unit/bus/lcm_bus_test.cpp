@@ -116,6 +116,24 @@ TEST_F(LcmBusTest, a_handler_may_subscribe_and_set_timers) {
   spin_until([&] { return heard && ran; });
 }
 
+TEST_F(LcmBusTest, what_has_gone_is_forgotten_also_within_its_own_handler) {
+  int heard = 0, ran = 0, last = 0;
+  auto listener = std::make_shared<int>(), ticker = std::make_shared<int>();
+  const auto captured = std::make_shared<int>();
+  bus_.subscribe(
+      "a", [&, captured](const std::string&, auto) { heard += 1, listener.reset(); }, Bus::kQueued, listener);
+  bus_.subscribe("last", [&](const std::string&, auto) { ++last; });
+  bus_.every(
+      1000, [&, captured] { ran += 1, ticker.reset(); }, ticker);
+  for (const char* channel : {"a", "a", "last"}) bus_.publish(channel, Bytes{});
+  spin_until([&] { return last == 1 && ran == 1; });
+  bus_.publish("a", Bytes{});
+  bus_.publish("last", Bytes{});
+  spin_until([&] { return last == 2 && captured.use_count() == 1; });
+  EXPECT_EQ(heard, 1);
+  EXPECT_EQ(ran, 1);
+}
+
 TEST_F(LcmBusTest, channel_names_that_are_not_printable_reach_nobody) {
   int heard = 0;
   bool last = false;
@@ -140,6 +158,7 @@ TEST_F(LcmBusTest, time_never_goes_back) {
 TEST(LcmBusUrl, one_that_cannot_be_joined_is_a_configuration_error) {
   Counters counters;
   EXPECT_THROW(LcmBus("nonsense://", counters), ConfigError);
+  EXPECT_THROW(LcmBus("udpm://10.0.0.1:7667?ttl=0", counters), ConfigError);
 }
 
 TEST(CountersTest, refusals_of_hostile_names_are_bounded_and_push_nothing_else_out) {

@@ -45,5 +45,22 @@ TEST(LockstepBusTest, what_a_timer_publishes_is_heard_at_its_time) {
   EXPECT_EQ(times, (std::vector<std::int64_t>{10, 20}));
 }
 
+TEST(LockstepBusTest, what_has_gone_is_forgotten_also_within_its_own_handler) {
+  LockstepBus bus(0);
+  int heard = 0, ran = 0;
+  auto listener = std::make_shared<int>(), ticker = std::make_shared<int>();
+  const auto captured = std::make_shared<int>();
+  bus.subscribe(
+      "a", [&, captured](const std::string&, auto) { heard += 1, listener.reset(); }, Bus::kQueued, listener);
+  bus.every(
+      10, [&, captured] { ran += 1, ticker.reset(); }, ticker);
+  bus.publish("a", {});
+  bus.publish("a", {});
+  bus.advance_to(100);
+  EXPECT_EQ(heard, 1);
+  EXPECT_EQ(ran, 1);
+  EXPECT_EQ(captured.use_count(), 1) << "the bus holds nothing of them any more";
+}
+
 }  // namespace
 }  // namespace concord::test

@@ -39,22 +39,20 @@ class LossyBus final : public Bus {
     });
   }
 
-  using Bus::subscribe;
-  void subscribe(const std::string& channel_regex, Handler handler, int queued) override {
+  using Bus::every, Bus::subscribe;
+  void subscribe(const std::string& channel_regex, Handler handler, int queued, Owner owner) override {
     const Handler* kept = handlers_.emplace_back(std::make_unique<Handler>(std::move(handler))).get();
     const auto hear = [this, kept, alive = std::weak_ptr(alive_)](const std::string& channel, auto bytes) {
       if (!alive.expired()) arrive(*kept, channel, {bytes.begin(), bytes.end()});
     };
-    air_.subscribe(channel_regex, hear, queued);
+    air_.subscribe(channel_regex, hear, queued, std::move(owner));
   }
   void publish(const std::string& channel, std::span<const std::uint8_t> bytes) override {
     bytes_sent_ += bytes.size();
     air_.publish(channel, bytes);
   }
-  void every(std::int64_t period, Task task) override {
-    air_.every(period, [task = std::move(task), alive = std::weak_ptr(alive_)] {
-      if (!alive.expired()) task();
-    });
+  void every(std::int64_t period, Task task, Owner owner) override {
+    air_.every(period, std::move(task), std::move(owner));
   }
   [[nodiscard]] std::int64_t now() const override { return air_.now(); }
 

@@ -234,9 +234,11 @@ TEST(Messages, listen_hands_on_what_is_good_and_refuses_the_rest_to_its_asker) {
 /// Only notes how many messages may wait.
 class QueueSpy final : public Bus {
  public:
-  void subscribe(const std::string& channel, Handler /*handler*/, int queued) override { queued_[channel] = queued; }
+  void subscribe(const std::string& channel, Handler /*handler*/, int queued, Owner /*owner*/) override {
+    queued_[channel] = queued;
+  }
   void publish(const std::string& /*channel*/, std::span<const std::uint8_t> /*bytes*/) override {}
-  void every(std::int64_t /*period*/, Task /*task*/) override {}
+  void every(std::int64_t /*period*/, Task /*task*/, Owner /*owner*/) override {}
   [[nodiscard]] std::int64_t now() const override { return 0; }
 
   std::map<std::string, int> queued_;

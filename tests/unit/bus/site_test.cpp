@@ -121,13 +121,45 @@ TEST_F(SiteFile, a_file_that_is_not_there_is_named) {
   }
 }
 
+TEST_F(SiteFile, the_state_folder_has_a_name) {
+  EXPECT_EQ(refusal("resolution: 0.1\nstate: ''\n").substr(0, 33), "line 2: site.state must be a fold");
+  EXPECT_EQ(refusal("state:\n"), "line 1: site.state has no value");
+}
+
+TEST_F(SiteFile, a_url_that_lcm_cannot_use_is_told_with_what_is_wrong_and_what_is_right) {
+  const auto says = [&](const std::string& url, const std::string& what) {
+    const std::string said = refusal("lcm_url: \"" + url + "\"\nbeyond_host: true\n");
+    EXPECT_EQ(said.rfind("line 1: lcm_url " + url, 0), 0U) << said;
+    EXPECT_NE(said.find(what), std::string::npos) << said;
+    EXPECT_NE(said.find("udpm://239.255.76.67:7667?ttl=0"), std::string::npos) << said;
+  };
+  says("5", "is no url");
+  says("", "is no url");
+  says("tcp://127.0.0.1:7700", "'tcp'");
+  says("udpm://127.0.0.1:7667?ttl=0", "'127.0.0.1', which is no multicast");
+  says("udpm://240.0.0.1:7667?ttl=0", "no multicast");
+  says("udpm://239.255.76:7667?ttl=0", "no multicast");
+  says("udpm://host:7667?ttl=0", "no multicast");
+  says("udpm://", "no multicast");
+  says("mpudpm://10.0.0.1:7667?ttl=0", "no multicast");
+  for (const char* port : {"0", "65536", "-1", "x", "", "7667 ", "99999999999"}) {
+    says("udpm://239.255.76.67:" + std::string(port) + "?ttl=0", "the port '" + std::string(port) + "'");
+  }
+  says("udpm://239.255.76.67", "the port ''");
+  for (const char* ttl : {"x", "", "256", "-1"}) {
+    says("udpm://239.255.76.67:7667?recv_buf_size=5&ttl=" + std::string(ttl), "ttl");
+  }
+  for (const char* url : {"udpm://224.0.0.1:1?ttl=255", "udpm://239.255.255.255:65535", "tcpq://10.0.0.1:7700"}) {
+    EXPECT_EQ(refusal("lcm_url: " + std::string(url) + "\nbeyond_host: true\n"), "accepted");
+  }
+}
+
 TEST_F(SiteFile, packets_leave_the_host_only_when_that_is_said) {
   EXPECT_EQ(refusal("lcm_url: udpm://239.255.76.67:7667?ttl=1\n").substr(0, 11), "lcm_url has");
   EXPECT_EQ(refusal("lcm_url: udpm://239.255.76.67:7667?ttl=01\n").substr(0, 11), "lcm_url has");
   EXPECT_EQ(refusal("lcm_url: udpm://239.255.76.67:7667\n").substr(0, 11), "lcm_url has");
   EXPECT_EQ(refusal("lcm_url: udpm://239.255.76.67:7667?xttl=0\n").substr(0, 11), "lcm_url has");
   EXPECT_EQ(refusal("lcm_url: udpm://239.255.76.67:7667?ttl=0&ttl=5\n").substr(0, 11), "lcm_url has");
-  EXPECT_EQ(refusal("lcm_url: udpm://239.255.76.67:7667?ttl=x\n").substr(0, 11), "lcm_url has");
   EXPECT_EQ(refusal("lcm_url: mpudpm://239.255.76.67:7667?ttl=1\n").substr(0, 11), "lcm_url has");
   EXPECT_EQ(refusal("lcm_url: tcpq://127.0.0.1:7700\n").substr(0, 11), "lcm_url has");
   EXPECT_EQ(refusal("lcm_url: udpm://239.255.76.67:7667?recv_buf_size=5&ttl=0\n"), "accepted");

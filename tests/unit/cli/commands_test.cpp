@@ -57,7 +57,10 @@ class Commands : public testing::Test {
 
   Ran run(const std::vector<std::string>& arguments) {
     Program program;
-    for (const auto add : {add_info, add_merge, add_project, add_plan, add_edit, add_requests, add_up}) add(program);
+    for (const auto add :
+         {add_info, add_merge, add_project, add_plan, add_edit, add_requests, add_downsample, add_up}) {
+      add(program);
+    }
     std::vector<const char*> argv = {"concord"};
     for (const std::string& argument : arguments) argv.push_back(argument.c_str());
     testing::internal::CaptureStdout();
@@ -219,6 +222,38 @@ TEST_F(Commands, UsageIsToldInTheFormAskedFor) {
   EXPECT_EQ(ran.exit, 2);
   EXPECT_EQ(ran.json()["error"]["code"], "USAGE");
   EXPECT_EQ(ran.err, "");
+}
+
+TEST_F(Commands, WrongUsageIsToldAsEveryFailureIs) {
+  for (const std::vector<std::string>& wrong : {std::vector<std::string>{}, {"nonsense"}, {"info"}}) {
+    const Ran ran = run(wrong);
+    EXPECT_EQ(ran.out, "");
+    EXPECT_EQ(ran.err.rfind("concord: ", 0), 0U) << ran.err;
+    EXPECT_NE(ran.err.find("--help (USAGE)"), std::string::npos) << ran.err;
+  }
+}
+
+TEST_F(Commands, EveryCommandRefusesASiteFileThatCannotBeUsed) {
+  std::ofstream(file("site.yaml")) << "nonsense: 1\n";
+  for (const char* site : {"site.yaml", "none.yaml"}) {
+    const Ran ran = run({"info", file("room.bt"), "--site", file(site), "--json"});
+    EXPECT_EQ(ran.exit, 2) << site;
+    EXPECT_EQ(ran.json()["error"]["code"], "CONFIGURATION") << site;
+  }
+}
+
+TEST_F(Commands, ACellSmallerThanAVoxelIsRefusedBeforeAnybodyIsAsked) {
+  std::ofstream(file("site.yaml")) << "lcm_url: memq://\nresolution: 0.1\n";
+  for (const char* cell : {"0", "0.05", "nan"}) {
+    const Ran ran = run({"downsample", "robot1", cell, "--out", file("c.csv"), "--site", file("site.yaml")});
+    EXPECT_EQ(ran.exit, 2);
+    EXPECT_NE(ran.err.find("0.100 m"), std::string::npos) << ran.err;
+  }
+}
+
+TEST_F(Commands, AnEditOfNothingIsRefused) {
+  std::ofstream(file("voxels.txt")) << "\n";
+  EXPECT_NE(run({"edit", "add", "--voxels", file("voxels.txt")}).err.find("EMPTY"), std::string::npos);
 }
 
 TEST_F(Commands, ANameThatTheSystemRefusesIsTwo) {

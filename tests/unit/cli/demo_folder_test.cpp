@@ -34,6 +34,27 @@ TEST_F(DemoFolderTest, ReplacesWhatAnEarlierDemoWroteAndNothingElse) {
   EXPECT_TRUE(has("output/mine.txt"));
 }
 
+TEST_F(DemoFolderTest, LeavesADemoThatRunsThereAlone) {
+  {
+    const auto runs = folder.prepare({});
+    ASSERT_TRUE(runs);
+    put("demo.lcm");
+    const auto second = folder.prepare({});
+    ASSERT_FALSE(second);
+    EXPECT_EQ(second.error().code, Code::kBusy);
+    EXPECT_NE(second.error().message.find("a demo runs in " + folder.path.string()), std::string::npos);
+    EXPECT_TRUE(has("demo.lcm"));
+  }
+  EXPECT_TRUE(folder.prepare({}));
+  EXPECT_FALSE(has("demo.lcm"));
+}
+
+TEST_F(DemoFolderTest, NamesTheFolderThatItCannotWrite) {
+  const auto prepared = DemoFolder{"/proc/nonexist"}.prepare({});
+  ASSERT_FALSE(prepared);
+  EXPECT_NE(prepared.error().message.find("/proc/nonexist:"), std::string::npos) << prepared.error().message;
+}
+
 TEST_F(DemoFolderTest, RefusesFilesThatNoDemoWrote) {
   put("map.bt");
   put("demo.lcm");

@@ -45,6 +45,33 @@ TEST_F(DemoReportTest, CountsVoxelsAndBytes) {
   EXPECT_EQ(json["map"]["occupied"], 512);
 }
 
+TEST_F(DemoReportTest, LostCloudsAreNamedAndTheReportIsNotComplete) {
+  EXPECT_EQ(to_json(report)["complete"], true);
+  report.agents[1].clouds_lost = 7;
+  const nlohmann::json json = to_json(report);
+  EXPECT_EQ(json["complete"], false);
+  EXPECT_EQ(json["agents"][0]["clouds_lost"], 0);
+  EXPECT_EQ(json["agents"][1]["clouds_lost"], 7);
+  report.agents[1].clouds_lost = 0;
+  report.streams_whole = false;
+  EXPECT_EQ(to_json(report)["complete"], false);
+}
+
+TEST_F(DemoReportTest, ThePageLinksAllThatIsThere) {
+  const std::string html = to_html(report);
+  for (const char* file : {"overview.png", "map.bt", "report.json", "demo.lcm"}) {
+    EXPECT_NE(html.find("href=\"" + std::string(file) + "\""), std::string::npos) << file;
+  }
+}
+
+TEST_F(DemoReportTest, ThePictureIsToldWhyThereIsNoPath) {
+  Path none;
+  none.status = "START_CLEARANCE";
+  none.message = "the robot does not fit";
+  report.path_before = none;
+  EXPECT_EQ(to_overview(report).before->message, "the robot does not fit");
+}
+
 TEST_F(DemoReportTest, ScoresTheMapAsItEnds) {
   report.robot = MapScore{0.9, 0.3, {{"glass", 0.0, false}}};
   report.merged = MapScore{0.9, 0.8, {{"glass", 0.1, false}}};

@@ -112,6 +112,40 @@ TEST_F(LiveTest, CopiesAStreamWhole) {
   EXPECT_EQ(copy.map(), map);
 }
 
+/// Why there is no submap of `agent` to wait for, when merge lists `listed` every now and then.
+std::string why_no_submap(const Common& common, const std::string& agent, const std::vector<AgentState>& listed) {
+  Live live(common);
+  live.bus().every(20'000, [&] { live.bus().publish("out/agents", encode(AgentList{live.bus().now(), listed})); });
+  StreamCopy copy(live, "out/agent/" + agent);
+  const auto synced = wait_for_submap(live, copy, agent);
+  return synced ? "there is" : synced.error().code;
+}
+
+TEST_F(LiveTest, AnAgentThatMergeDoesNotListIsNotWaitedFor) {
+  AgentState robot1;
+  robot1.id = "robot1";
+  robot1.frame_id = "odom";
+  EXPECT_EQ(why_no_submap(common, "nobody", {}), "NO_AGENT");
+  EXPECT_EQ(why_no_submap(common, "nobody", {robot1}), "NO_AGENT");
+  EXPECT_EQ(why_no_submap(common, "robot1", {robot1}), "NO_MAP") << "it only says where it is";
+  common.timeout = 0.3;
+  robot1.revision = 7;
+  EXPECT_EQ(why_no_submap(common, "robot1", {robot1}), "NO_ANSWER") << "it has one, but ingest does not speak";
+}
+
+TEST_F(LiveTest, TheSubmapOfAnAgentThatWasRemovedIsNone) {
+  Live live(common);
+  const BrickMap nothing;
+  BrickSender sender(live.bus(), live.counters(),
+                     {.stream = "out/agent/robot1", .resolution = live.site().resolution, .boot_id = live.bus().now()},
+                     nothing);
+  sender.end();
+  StreamCopy copy(live, "out/agent/robot1");
+  const auto synced = wait_for_submap(live, copy, "robot1");
+  ASSERT_FALSE(synced);
+  EXPECT_EQ(synced.error().code, "NO_AGENT");
+}
+
 Downsampled part_of(const DownsampleRequest& asked, std::int32_t part) {
   return {asked.id, asked.agent, "f", asked.resolution, part, 3, {Eigen::Vector3f(static_cast<float>(part), 0, 0)}};
 }

@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include "cli/stack.hpp"
+
 namespace concord {
 namespace {
 
@@ -127,6 +129,49 @@ TEST(SupervisorDeath, EndsTheChildrenOfASupervisorThatWasKilled) {
   };
   while (is_running() && Supervisor::Clock::now() < end) sched_yield();
   EXPECT_FALSE(is_running());
+}
+
+class StateLockTest : public testing::Test {
+ protected:
+  void TearDown() override { std::filesystem::remove_all(state); }
+
+  const std::filesystem::path state = std::filesystem::path(testing::TempDir()) / ("state" + std::to_string(getpid()));
+};
+
+TEST_F(StateLockTest, ASecondStackStartsNothing) {
+  const auto first = FileLock::take(state / "lock", "held");
+  ASSERT_TRUE(first);
+  Supervisor supervisor([](const std::string&) {});
+  const auto second =
+      start_stack(supervisor, {.site_file = {}, .lcm_url = "", .state = state, .log = {}, .output = {}});
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().code, Code::kBusy);
+  EXPECT_NE(second.error().message.find("a stack runs on the state folder " + state.string()), std::string::npos);
+  EXPECT_EQ(not_started(second.error()).value().exit, Exit::kRefused);
+  EXPECT_EQ(supervisor.pid("ingest"), 0);
+}
+
+TEST_F(StateLockTest, IsFreeOnceItsHolderWasKilled) {
+  int channel[2];
+  ASSERT_EQ(pipe(channel), 0);
+  const pid_t host = fork();
+  if (host == 0) {
+    const auto lock = FileLock::take(state / "lock", "held");
+    Supervisor supervisor([](const std::string&) {});
+    const bool ready = lock && supervisor.start({"child", {"sleep", "1000"}, {}, true});
+    [[maybe_unused]] const ssize_t written = write(channel[1], &ready, sizeof(ready));
+    pause();
+    _exit(0);
+  }
+  bool ready = false;
+  ASSERT_EQ(read(channel[0], &ready, sizeof(ready)), static_cast<ssize_t>(sizeof(ready)));
+  ASSERT_TRUE(ready);
+  EXPECT_FALSE(FileLock::take(state / "lock", "held"));
+  kill(host, SIGKILL);
+  waitpid(host, nullptr, 0);
+  EXPECT_TRUE(FileLock::take(state / "lock", "held"));
+  close(channel[0]);
+  close(channel[1]);
 }
 
 }  // namespace
