@@ -26,7 +26,7 @@ struct Overview {
     std::string status;  ///< "OK" or why there is none
     std::vector<Eigen::Vector2d> points;
     double length = 0.0;
-    std::string message;  ///< why there is none, for a person
+    std::string message = {};  ///< why there is none, for a person
   };
   /// A line of the table of things to find: the share of each (0 to 1) that was found; absent: not measured.
   struct Feature {
