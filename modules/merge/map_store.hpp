@@ -5,26 +5,34 @@
 #include <utility>
 #include <vector>
 
-#include "core/brick_map.hpp"
+#include "core/byte_stream.hpp"
 #include "core/error.hpp"
-#include "core/octomap_format.hpp"
 
 namespace concord {
 
-/// The folder of saved maps: NAME.bt and NAME.ot, which OctoMap's tools read. Names come checked (is_name).
+/// The folder of saved maps: NAME.bt and NAME.ot, which OctoMap's tools read, and NAME.concord (core/map_archive.md).
+/// Names come checked (is_name).
 class MapStore {
  public:
   explicit MapStore(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  /// Writes the whole file, synced, before it takes its name; an interrupted save leaves the old one.
-  /// Refused: kExists unless `overwrite`, kIo, and what write_octomap_file refuses. Returns the bytes written.
-  [[nodiscard]] Result<std::int64_t> save(const BrickMap& map, double resolution, const std::string& name,
-                                          const std::string& format, bool overwrite) const;
+  /// Whether a map may take this name. Refused: kExists unless `overwrite`.
+  [[nodiscard]] Result<void> check(const std::string& name, const std::string& format, bool overwrite) const;
+  /// Writes the whole file, synced, before it takes its name; an interrupted save leaves the old one. Refused: kIo.
+  [[nodiscard]] Result<void> save(ByteSpan bytes, const std::string& name, const std::string& format) const;
+
+  [[nodiscard]] bool contains(const std::string& name, const std::string& format) const;
+  /// Refused: kNotFound, kTooLarge (before memory is taken), kIo.
+  [[nodiscard]] Result<Bytes> read(const std::string& name, const std::string& format, std::uint64_t most) const;
 
   /// File names with extension and sizes, sorted.
   [[nodiscard]] Result<std::vector<std::pair<std::string, std::int64_t>>> list() const;
 
  private:
+  [[nodiscard]] std::filesystem::path path_of(const std::string& name, const std::string& format) const {
+    return folder_ / (name + "." + format);
+  }
+
   std::filesystem::path folder_;
 };
 

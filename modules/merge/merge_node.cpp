@@ -19,7 +19,7 @@ MergeNode::MergeNode(const NodeContext& context)
       map_(context, people_.pins()),
       agents_(context, people_, map_),
       people_node_(context, store_, people_, map_, agents_),
-      maps_node_(context, map_, people_node_),
+      maps_node_(context, {store_, people_, map_, agents_, people_node_}),
       reports_node_(context, people_, map_) {
   BrickSet pinned;
   for (const BrickIndex index : people_.pins().sorted_bricks()) pinned.insert(index);

@@ -120,10 +120,7 @@ Result<void> PeopleNode::commit(const Correction& correction) {
   return {};
 }
 
-Result<void> PeopleNode::append(std::vector<Correction> corrections) {
-  for (Correction& correction : corrections) {
-    correction.revision = people_.revision() + 1 + (&correction - corrections.data());
-  }
+Result<void> PeopleNode::append(const std::vector<Correction>& corrections) {
   if (const auto stored = store_.put(corrections); !stored) return stored;
   for (const Correction& correction : corrections) follow(correction);
   map_.refold_and_send();

@@ -26,8 +26,8 @@ class PeopleNode {
   /// the id is new.
   [[nodiscard]] bool repeat(const std::string& channel, const std::string& id, std::uint64_t content);
 
-  /// Corrections from a saved map: all or none. @pre in order, each with an id that is new. Refused: kIo.
-  [[nodiscard]] Result<void> append(std::vector<Correction> corrections);
+  /// Corrections from a saved map: all or none. @pre they follow on what was made. Refused: kIo.
+  [[nodiscard]] Result<void> append(const std::vector<Correction>& corrections);
 
  private:
   /// Hears requests of one type; `check` says what one leads to, and may look at all there is.

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "core/octomap_reader.hpp"
 #include "store/whole_file.hpp"
 
 namespace concord {
@@ -15,35 +14,33 @@ class MapStoreTest : public ::testing::Test {
   MapStoreTest() {
     std::string pattern = (std::filesystem::temp_directory_path() / "concord-maps-XXXXXX").string();
     folder_ = ::mkdtemp(pattern.data());
-    VoxelMask mask{};
-    mask[3] = 0xF0;
-    map_.set({1, -2, 3}, Brick::uniform(mask, kOccupied));
   }
   ~MapStoreTest() override { std::filesystem::remove_all(folder_); }
 
   std::filesystem::path folder_;
-  BrickMap map_;
+  Bytes bytes_{1, 2, 3};
 };
 
 TEST_F(MapStoreTest, SavesWhatReadsBackTheSame) {
   const MapStore maps(folder_ / "maps");
-  const auto bytes = maps.save(map_, 0.05, "hall", "bt", false);
-  ASSERT_TRUE(bytes) << bytes.error().message;
+  ASSERT_TRUE(maps.save(bytes_, "hall", "bt"));
+  ASSERT_TRUE(maps.save(bytes_, "hall", "concord"));
   const auto files = maps.list();
   ASSERT_TRUE(files);
-  EXPECT_EQ(*files, (std::vector<std::pair<std::string, std::int64_t>>{{"hall.bt", *bytes}}));
-  const auto read = read_octomap_file(*read_whole_file(folder_ / "maps/hall.bt", 1000), std::nullopt);
-  ASSERT_TRUE(read);
-  EXPECT_EQ(read->map, map_);
+  const auto size = static_cast<std::int64_t>(bytes_.size());
+  EXPECT_EQ(*files, (std::vector<std::pair<std::string, std::int64_t>>{{"hall.bt", size}, {"hall.concord", size}}));
+  EXPECT_EQ(*maps.read("hall", "bt", 100), bytes_);
+  EXPECT_EQ(maps.read("hall", "bt", 2).error().code, Code::kTooLarge);
+  EXPECT_EQ(maps.read("wall", "bt", 100).error().code, Code::kNotFound);
 }
 
 TEST_F(MapStoreTest, OverwritesOnlyWhenAsked) {
   const MapStore maps(folder_);
-  ASSERT_TRUE(maps.save(map_, 0.05, "hall", "bt", false));
-  const auto again = maps.save(BrickMap{}, 0.05, "hall", "bt", false);
-  ASSERT_FALSE(again);
-  EXPECT_EQ(again.error().code, Code::kExists);
-  EXPECT_TRUE(maps.save(BrickMap{}, 0.05, "hall", "bt", true));
+  EXPECT_TRUE(maps.check("hall", "bt", false));
+  ASSERT_TRUE(maps.save(bytes_, "hall", "bt"));
+  EXPECT_EQ(maps.check("hall", "bt", false).error().code, Code::kExists);
+  EXPECT_TRUE(maps.check("hall", "ot", false));
+  EXPECT_TRUE(maps.check("hall", "bt", true));
 }
 
 TEST_F(MapStoreTest, AFolderThatIsNotThereHasNoMaps) {
@@ -54,7 +51,7 @@ TEST_F(MapStoreTest, AFolderThatIsNotThereHasNoMaps) {
 
 TEST_F(MapStoreTest, SaysWhyItCannotSave) {
   ASSERT_TRUE(write_whole_file(folder_ / "file", {}));
-  const auto saved = MapStore(folder_ / "file").save(map_, 0.05, "hall", "bt", false);
+  const auto saved = MapStore(folder_ / "file").save(bytes_, "hall", "bt");
   ASSERT_FALSE(saved);
   EXPECT_EQ(saved.error().code, Code::kIo);
 }

@@ -1,0 +1,120 @@
+#include "merge/loaded_corrections.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include <xxhash.h>
+
+namespace concord {
+namespace {
+
+/// The same for the same request, so that what was done is known when it is asked again.
+std::string id_for(const std::string& what, const Loading& loading, const std::string& agent) {
+  const std::string text = loading.request_id + '\n' + agent;
+  return what + "-" +
+         std::to_string(
+             XXH3_64bits_withSeed(text.data(), text.size(), static_cast<std::uint64_t>(loading.incarnation)));
+}
+
+bool is_of(const Correction::Placement& placement, const LayerHead& head) {
+  return placement.agent == head.agent && placement.frame_id == head.frame_id &&
+         placement.incarnation == head.incarnation;
+}
+
+class Following {
+ public:
+  Following(const Loading& loading, const People& people) : loading_(loading), people_(people) {}
+
+  Result<void> take_saved() {
+    for (const Correction& saved : loading_.archive.corrections) {
+      Correction correction = saved;
+      const LayerHead* head = rekey(correction);
+      if (head != nullptr) placed_.insert_or_assign(head->agent, correction);
+      const People::Made* known = people_.find(saved.id);
+      if (known == nullptr) {
+        append(std::move(correction));
+        if (head != nullptr) appended_[head->agent] = true;
+        continue;
+      }
+      if (known->content != saved.content) {
+        return refuse(Code::kExists, "another correction has the id " + saved.id + ", which the map has too");
+      }
+      if (head != nullptr) appended_[head->agent] = false;
+    }
+    return {};
+  }
+
+  /// What the file's layers are where and how they were.
+  void complete(const std::function<int(const std::string&)>& weight_here) {
+    for (const SavedLayer& layer : loading_.archive.layers) {
+      const LayerHead& head = layer.head;
+      const auto placed = placed_.find(head.agent);
+      if (placed != placed_.end() && !appended_.at(head.agent) && !is_placed(head)) {
+        Correction again = placed->second;
+        again.id = id_for("placed", loading_, head.agent);
+        append(std::move(again));
+      }
+      if (weight_after(head.agent, weight_here) == head.weight) continue;
+      append({0, id_for("weight", loading_, head.agent), author_of(head), loading_.utime, 0,
+              Correction::Weight{head.agent, head.weight}});
+    }
+  }
+
+  std::vector<Correction> out;
+
+ private:
+  void append(Correction correction) {
+    if (const auto* weight = std::get_if<Correction::Weight>(&correction.what)) {
+      new_weights_[weight->agent] = weight->weight;
+    }
+    correction.revision = people_.revision() + 1 + static_cast<std::int64_t>(out.size());
+    out.push_back(std::move(correction));
+  }
+
+  /// The layer that a placement is of, after making it one of what the layer has become; null: of none.
+  const LayerHead* rekey(Correction& correction) const {
+    auto* placement = std::get_if<Correction::Placement>(&correction.what);
+    if (placement == nullptr) return nullptr;
+    const auto it = std::ranges::find_if(loading_.archive.layers,
+                                         [&](const SavedLayer& layer) { return is_of(*placement, layer.head); });
+    if (it == loading_.archive.layers.end()) return nullptr;
+    placement->incarnation = loading_.incarnation;
+    placement->has_layer = true;
+    return &it->head;
+  }
+
+  [[nodiscard]] bool is_placed(const LayerHead& head) const {
+    return people_.T_map_agent(head.agent, head.frame_id, loading_.incarnation) != nullptr;
+  }
+  [[nodiscard]] int weight_after(const std::string& agent,
+                                 const std::function<int(const std::string&)>& weight_here) const {
+    const auto it = new_weights_.find(agent);
+    return it != new_weights_.end() ? it->second : people_.weight(agent).value_or(weight_here(agent));
+  }
+  /// Who placed it, if anybody did.
+  [[nodiscard]] std::string author_of(const LayerHead& head) const {
+    const auto it = placed_.find(head.agent);
+    return it != placed_.end() ? it->second.author : std::string();
+  }
+
+  const Loading& loading_;
+  const People& people_;
+  std::map<std::string, Correction> placed_;  ///< the last placement of each layer
+  std::map<std::string, bool> appended_;      ///< whether that was new here
+  std::map<std::string, int> new_weights_;
+};
+
+}  // namespace
+
+Result<std::vector<Correction>> corrections_to_load(const Loading& loading, const People& people, CorrectionCheck ours,
+                                                    const std::function<int(const std::string& agent)>& weight_here) {
+  Following following(loading, people);
+  if (const auto taken = following.take_saved(); !taken) return tl::unexpected(taken.error());
+  following.complete(weight_here);
+  for (const Correction& correction : following.out) {
+    if (const auto follows = ours.take(correction); !follows) return tl::unexpected(follows.error());
+  }
+  return std::move(following.out);
+}
+
+}  // namespace concord
