@@ -71,8 +71,10 @@ class Session {
     observer_ = std::make_unique<Observer>(people_);
   }
 
-  /// Before its agents are known merge refuses to place them: the opening is asked until it is granted.
-  void place_robots() {
+  /// Places the robots and waits until what they saw is the map: a move looks at it. Before its agents are known merge
+  /// refuses to place them; that is asked until it is granted.
+  void open() {
+    Oracle oracle(kResolution, submaps(plan_.seed));
     for (const Request& request : script_.opening()) {
       const bool placed = test::eventually(buses(), [&] {
         const auto it = said_.find(id_of(request));
@@ -81,7 +83,11 @@ class Session {
         return granted;
       });
       if (!placed) throw std::runtime_error("a robot could not be placed\n" + stack_.logs());
+      oracle.apply(request);
     }
+    if (!becomes_equal(oracle)) throw std::runtime_error(outcome_.complaints.back() + "\n" + stack_.logs());
+    outcome_.refused = 0;
+    outcome_.refusals.clear();
   }
 
   void work() {
@@ -176,7 +182,7 @@ class Session {
 Outcome run(const Plan& plan) {
   const auto start = std::chrono::steady_clock::now();
   Session session(plan);
-  session.place_robots();
+  session.open();
   session.work();
   session.compare();
   session.outcome().seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
