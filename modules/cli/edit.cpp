@@ -59,7 +59,7 @@ void print_edit(const Answer& answer, const std::optional<Operation>& made, doub
   if (made) {
     const Box bounds = extent(made->min, made->max, resolution);
     object["bounds"] = to_json(bounds);
-    words += "\n" + std::string(kExtentHeading) + ": " + to_words(bounds);
+    words += "\nx, y, z: " + to_words(bounds) + " m";
   }
   common.print(object, words);
 }

@@ -53,8 +53,9 @@ struct ToJson {
 }  // namespace
 
 Box extent(VoxelIndex min, VoxelIndex max, double resolution) {
-  return {Eigen::Vector3d(min.x, min.y, min.z) * resolution,
-          Eigen::Vector3d(max.x + 1, max.y + 1, max.z + 1) * resolution};
+  // 28 x 0.1 is 2.8000000000000003: to the micrometre it reads as it was meant.
+  const auto metres = [&](int index) { return std::round(index * resolution * 1e6) / 1e6; };
+  return {{metres(min.x), metres(min.y), metres(min.z)}, {metres(max.x + 1), metres(max.y + 1), metres(max.z + 1)}};
 }
 
 Box extent(const Volume& volume, const Transform& T_map_volume) {
