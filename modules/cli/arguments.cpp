@@ -22,6 +22,20 @@ Result<std::vector<double>> all_numbers(const std::string& text) {
   return numbers;
 }
 
+template <class Point>
+Result<std::vector<Point>> points(const std::string& text) {
+  constexpr std::size_t kNumbers = Point::RowsAtCompileTime;
+  const auto numbers = all_numbers(text);
+  if (!numbers) return tl::unexpected(numbers.error());
+  if (numbers->empty() || numbers->size() % kNumbers != 0) {
+    return refuse(Code::kMalformed, "'" + text + "' must hold " + (kNumbers == 2 ? "two" : "three") +
+                                        " numbers a point, quoted as one argument");
+  }
+  std::vector<Point> points;
+  for (std::size_t i = 0; i < numbers->size(); i += kNumbers) points.emplace_back(numbers->data() + i);
+  return points;
+}
+
 }  // namespace
 
 Result<std::vector<double>> parse_numbers(const std::string& text, std::size_t count) {
@@ -50,15 +64,20 @@ Result<Box> parse_box(const std::string& text) {
   });
 }
 
-Result<std::vector<Eigen::Vector3d>> parse_points(const std::string& text) {
-  const auto numbers = all_numbers(text);
-  if (!numbers) return tl::unexpected(numbers.error());
-  if (numbers->empty() || numbers->size() % 3 != 0) {
-    return refuse(Code::kMalformed, "'" + text + "' must hold three numbers a point, quoted as one argument");
-  }
-  std::vector<Eigen::Vector3d> points;
-  for (std::size_t i = 0; i < numbers->size(); i += 3) points.emplace_back(numbers->data() + i);
-  return points;
+Result<std::vector<Eigen::Vector3d>> parse_points(const std::string& text) { return points<Eigen::Vector3d>(text); }
+
+Result<std::vector<Eigen::Vector2d>> parse_points_2d(const std::string& text) { return points<Eigen::Vector2d>(text); }
+
+Result<Eigen::Vector3d> parse_vector(const std::string& text) {
+  return parse_numbers(text, 3).map([](const auto& n) { return Eigen::Vector3d(n[0], n[1], n[2]); });
+}
+
+Result<OrientedBox> parse_oriented_box(const std::string& text) {
+  return parse_numbers(text, 10).and_then([](const auto& n) {
+    return make_transform({n[0], n[1], n[2]}, {n[3], n[4], n[5], n[6]}).map([&](const Transform& T_frame_box) {
+      return OrientedBox{T_frame_box, {n[7], n[8], n[9]}};
+    });
+  });
 }
 
 }  // namespace concord

@@ -25,5 +25,11 @@ inline const CLI::Range kRobotRadius(0.001, 10.0);
 [[nodiscard]] Result<Box> parse_box(const std::string& text);
 /// "x y z x y z ...": at least one point.
 [[nodiscard]] Result<std::vector<Eigen::Vector3d>> parse_points(const std::string& text);
+/// "x y x y ...": at least one point.
+[[nodiscard]] Result<std::vector<Eigen::Vector2d>> parse_points_2d(const std::string& text);
+/// "x y z".
+[[nodiscard]] Result<Eigen::Vector3d> parse_vector(const std::string& text);
+/// "x y z qx qy qz qw sx sy sz": centre, rotation and whole edges.
+[[nodiscard]] Result<OrientedBox> parse_oriented_box(const std::string& text);
 
 }  // namespace concord

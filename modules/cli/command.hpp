@@ -76,7 +76,16 @@ void add_project(Program& program);
 void add_plan(Program& program);
 void add_status(Program& program);
 void add_agents(Program& program);
+/// edit, undo, redo.
 void add_edit(Program& program);
+void add_history(Program& program);
+/// zone, zones.
+void add_zones(Program& program);
+/// lease, leases.
+void add_leases(Program& program);
+void add_conflicts(Program& program);
+/// set-weight, localise.
+void add_agent_corrections(Program& program);
 /// set-transform, goal, reset, remove.
 void add_requests(Program& program);
 /// save, load, maps.

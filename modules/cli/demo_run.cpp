@@ -250,8 +250,12 @@ DemoRun::Step DemoRun::edit() {
   before_edit_ = copies_->map.map();
   if (scene_.edit.empty()) return {};
   const double since = now();
-  const EditRequest request{live_->new_id(), scene_.author, EditRequest::Op::kAdd, scene_.edit, live_->bus().now()};
-  const auto answer = live_->ask("in/edit", encode(request, scene_.resolution), request.id);
+  EditRequest request;
+  request.id = live_->new_id();
+  request.author = scene_.author;
+  request.shape = VoxelList{scene_.resolution, to_boxes(scene_.edit)};
+  request.utime = live_->bus().now();
+  const auto answer = live_->ask("in/edit", encode(request), request.id);
   if (!answer) return tl::unexpected(answer.error());
   const auto shown = wait_for("the edit in the map", kSync, [this] {
     return std::ranges::all_of(scene_.edit, [&](const VoxelIndex& v) {

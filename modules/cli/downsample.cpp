@@ -1,7 +1,5 @@
 #include "cli/downsample.hpp"
 
-#include <algorithm>
-#include <map>
 #include <memory>
 #include <sstream>
 
@@ -9,6 +7,7 @@
 
 #include "cli/map_file.hpp"
 #include "cli/numbers.hpp"
+#include "cli/parts.hpp"
 #include "cli/report.hpp"
 
 namespace concord {
@@ -19,28 +18,6 @@ constexpr std::int64_t kSilence = 1'000'000;  // microseconds
 struct Options {
   std::string agent, out;
   double resolution = 0.5;
-};
-
-/// The parts of one answer; they may come in any order and more than once.
-struct Parts {
-  std::map<std::int32_t, Downsampled> heard;
-  std::int64_t last_heard = 0;
-
-  void take(Downsampled part, std::int64_t now) {
-    // Asked again, the submap may have changed: what was heard before belongs to another cloud.
-    if (!heard.empty() && heard.begin()->second.parts != part.parts) heard.clear();
-    heard[part.part] = std::move(part);
-    last_heard = now;
-  }
-
-  [[nodiscard]] bool complete() const {
-    return !heard.empty() && static_cast<std::int32_t>(heard.size()) == heard.begin()->second.parts;
-  }
-  [[nodiscard]] std::vector<Eigen::Vector3f> points() const {
-    std::vector<Eigen::Vector3f> all;
-    for (const auto& [part, value] : heard) all.insert(all.end(), value.points.begin(), value.points.end());
-    return all;
-  }
 };
 
 std::string as_csv(const std::vector<Eigen::Vector3f>& points) {
@@ -82,31 +59,12 @@ Outcome downsample(const Options& options, const Common& common) {
 }  // namespace
 
 tl::expected<std::vector<Eigen::Vector3f>, Failure> request_cloud(Live& live, const DownsampleRequest& request) {
-  const auto parts = std::make_shared<Parts>();  // the subscription outlives this call
-  live.hear<Downsampled>("out/downsampled", [parts, id = request.id, &live](const std::string&, Downsampled part) {
-    if (part.id == id) parts->take(std::move(part), live.bus().now());
-  });
-  const auto refused = [&] {
-    const Answer* answer = live.answer_to(request.id);
-    return answer != nullptr && !answer->ok;
-  };
-  std::int64_t asked = 0;
-  live.wait(live.timeout(), [&] {
-    const std::int64_t now = live.bus().now();
-    if (parts->complete() || refused()) return true;
-    if (now - std::max(asked, parts->last_heard) > kSilence) {
-      live.bus().publish("in/downsample", encode(request, now));
-      asked = now;
-    }
-    return false;
-  });
-  if (refused()) {
-    const Answer& answer = *live.answer_to(request.id);
-    return fail(Exit::kRefused, answer.code, answer.process + ": " + answer.message);
-  }
-  if (parts->heard.empty()) return live.no_answer("ingest");
-  if (!parts->complete()) return fail(Exit::kIncomplete, "INCOMPLETE", "parts of the cloud did not arrive; try again");
-  return parts->points();
+  const Question question{"in/downsample", encode(request, live.bus().now()), request.id, "ingest", kSilence};
+  const auto parts = ask_in_parts<Downsampled>(live, question, "out/downsampled");
+  if (!parts) return tl::unexpected(parts.error());
+  std::vector<Eigen::Vector3f> points;
+  for (const Downsampled& part : *parts) points.insert(points.end(), part.points.begin(), part.points.end());
+  return points;
 }
 
 void add_downsample(Program& program) {

@@ -1,111 +1,107 @@
-#include <cstdint>
-#include <fstream>
-#include <memory>
-#include <sstream>
+// edit, undo, redo: what people pin above every sensor.
 
-#include <nlohmann/json.hpp>
+#include <memory>
 
 #include "cli/arguments.hpp"
+#include "cli/extent.hpp"
+#include "cli/history.hpp"
 #include "cli/live.hpp"
 #include "cli/numbers.hpp"
 #include "cli/report.hpp"
-#include "core/shape.hpp"
-#include "core/voxel_boxes.hpp"
+#include "cli/selection_options.hpp"
 
 namespace concord {
 namespace {
 
+/// Merge's words, and by what the edit can be found again.
+std::string to_words(const Answer& answer) {
+  return answer.process + ": " + answer.message + "\nid " + answer.id + ", " + format_count(answer.count) +
+         (answer.count == 1 ? " voxel" : " voxels") + ", revision " + std::to_string(answer.revision);
+}
+
 struct Options {
-  std::string op, box, line, area, file, author;
-  double thickness = 0.0;
+  std::string op, move, author, id;
+  SelectionOptions selection;
+  std::int64_t base_revision = kAnyRevision;
 };
 
-/// One voxel: three whole numbers and nothing else. Absent where the line holds anything else.
-std::optional<VoxelIndex> parse_voxel(const std::string& line) {
-  std::istringstream in(line);
-  VoxelIndex v;
-  std::string more;
-  if (!(in >> v.x >> v.y >> v.z) || in >> more) return std::nullopt;
-  return v;
+struct UndoOptions {
+  std::string edit, author, id;
+};
+
+EditRequest::Op op_of(const std::string& word) {
+  if (word == "add") return EditRequest::Op::kAdd;
+  return word == "delete" ? EditRequest::Op::kDelete : EditRequest::Op::kMove;
 }
 
-Result<std::vector<VoxelIndex>> read_voxels(const std::string& file) {
-  std::ifstream in(file);
-  if (!in) return refuse(Code::kNotFound, "cannot read " + file);
-  std::vector<VoxelBox> boxes;
-  std::int64_t number = 0;
-  for (std::string line; std::getline(in, line);) {
-    ++number;
-    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-    const auto voxel = parse_voxel(line);
-    if (!voxel) {
-      return refuse(Code::kMalformed, file + ", line " + std::to_string(number) +
-                                          ": must hold one voxel, three whole numbers (map lattice)");
-    }
-    if (static_cast<std::int64_t>(boxes.size()) == kMaxEditVoxels) {
-      return refuse(Code::kTooLarge, file + ", line " + std::to_string(number) + ": one edit holds at most " +
-                                         std::to_string(kMaxEditVoxels) + " voxels; give it in parts");
-    }
-    boxes.push_back({*voxel, *voxel});
+Result<Eigen::Vector3d> move_of(const Options& options) {
+  if ((options.op == "move") == options.move.empty()) {
+    return refuse(Code::kBadRequest, "edit move needs --move \"dx dy dz\", and nothing else does");
   }
-  if (in.bad()) return refuse(Code::kIo, "cannot read " + file + " to its end");
-  return expand(boxes, kMaxEditVoxels);
+  if (options.move.empty()) return Eigen::Vector3d::Zero().eval();
+  return parse_vector(options.move);
 }
 
-Result<std::vector<VoxelIndex>> selected(const Result<Shape>& shape, double resolution) {
-  if (!shape) return tl::unexpected(shape.error());
-  return select(*shape, Transform::Identity(), resolution, kMaxEditVoxels);
+/// As merge keeps it. Absent: it has not said so in time, which does not undo the edit.
+std::optional<Operation> request_made(Live& live, const Answer& answer) {
+  HistoryRequest request;
+  request.after_revision = answer.revision - 1;
+  const auto made = request_history(live, request, 1);
+  if (!made || made->empty() || made->front().id != answer.id) return std::nullopt;
+  return made->front();
 }
 
-Result<std::vector<VoxelIndex>> voxels_of(const Options& options, double resolution) {
-  if (!options.box.empty())
-    return selected(parse_box(options.box).map([](const Box& box) { return Shape(box); }), resolution);
-  const auto as_line = [&](std::vector<Eigen::Vector3d> points) {
-    return Shape(Line{std::move(points), options.thickness});
-  };
-  if (!options.line.empty()) return selected(parse_points(options.line).map(as_line), resolution);
-  const auto as_area = [&](std::vector<Eigen::Vector3d> points) {
-    return Shape(Area{std::move(points), options.thickness});
-  };
-  if (!options.area.empty()) return selected(parse_points(options.area).map(as_area), resolution);
-  return read_voxels(options.file);
-}
-
-/// The corners of the box around the voxels, metres. @pre there are some.
-Box box_around(const std::vector<VoxelIndex>& voxels, double resolution) {
-  Box box{Eigen::Vector3d::Constant(kMaxVoxel), Eigen::Vector3d::Constant(-kMaxVoxel)};
-  for (const VoxelIndex& v : voxels) {
-    const Eigen::Vector3d low(v.x, v.y, v.z);
-    box = {box.min.cwiseMin(low), box.max.cwiseMax(low + Eigen::Vector3d::Ones())};
-  }
-  return {box.min * resolution, box.max * resolution};
-}
-
-std::string in_words(const Eigen::Vector3d& p) {
-  return "(" + format_number(p.x(), 2) + ", " + format_number(p.y(), 2) + ", " + format_number(p.z(), 2) + ")";
-}
-
-/// Where the pins are is said in any case: corners may be given in any order, and voxels in indices.
-void print_pinned(const Answer& answer, const Box& box, const Common& common) {
+/// Where the pins are is said in any case: corners may be given in any order and frame, and voxels in indices.
+void print_edit(const Answer& answer, const std::optional<Operation>& made, double resolution, const Common& common) {
   nlohmann::json object = to_json(answer);
-  object["id"] = answer.id;
-  object["box"] = {{"min", {box.min.x(), box.min.y(), box.min.z()}}, {"max", {box.max.x(), box.max.y(), box.max.z()}}};
-  common.print(object, answer.process + ": " + answer.message + ": " + format_count(answer.count) + " voxels from " +
-                           in_words(box.min) + " to " + in_words(box.max) + " m, edit " + answer.id);
+  std::string words = to_words(answer);
+  object["bounds"] = nullptr;
+  if (made) {
+    const Box bounds = extent(made->min, made->max, resolution);
+    object["bounds"] = to_json(bounds);
+    words += "\nx, y, z: " + to_words(bounds) + " m";
+  }
+  common.print(object, words);
 }
 
 Outcome edit(const Options& options, const Common& common) {
-  auto voxels = voxels_of(options, common.site().resolution);
-  if (!voxels) return fail(voxels.error());
-  if (voxels->empty()) return fail(Exit::kUnusable, name(Code::kEmpty), "there is no voxel to pin");
+  if (!options.id.empty() && !is_name(options.id)) return bad_name(options.id);
+  const auto move = move_of(options);
+  if (!move) return fail(move.error());
+  auto shape = shape_of(options.selection, common.site().resolution);
+  if (!shape) return fail(shape.error());
   Live live(common);
-  const auto op = options.op == "add" ? EditRequest::Op::kAdd : EditRequest::Op::kDelete;
-  const Box box = box_around(*voxels, live.site().resolution);
-  const EditRequest request{live.new_id(), author_or_user(options.author), op, std::move(*voxels), live.bus().now()};
-  const auto answer = live.ask("in/edit", encode(request, live.site().resolution), request.id);
+  EditRequest request;
+  request.id = live.id_or_new(options.id);
+  request.author = author_or_user(options.author);
+  request.op = op_of(options.op);
+  request.shape = std::move(*shape);
+  request.frame = options.selection.frame;
+  request.move = *move;
+  request.base_revision = options.base_revision;
+  request.utime = live.bus().now();
+  const auto answer = live.ask("in/edit", encode(request), request.id);
   if (!answer) return tl::unexpected(answer.error());
-  print_pinned(*answer, box, common);
+  print_edit(*answer, request_made(live, *answer), live.site().resolution, common);
   return Exit::kDone;
+}
+
+Outcome undo(const UndoOptions& options, bool redo, const Common& common) {
+  if (!is_name(options.edit)) return bad_name(options.edit);
+  if (!options.id.empty() && !is_name(options.id)) return bad_name(options.id);
+  Live live(common);
+  const UndoRequest request{live.id_or_new(options.id), author_or_user(options.author), options.edit, redo,
+                            live.bus().now()};
+  return print_revision(live.ask("in/undo", encode(request), request.id), common);
+}
+
+void add_undo(Program& program, const std::string& name, const std::string& what, bool redo) {
+  auto options = std::make_shared<UndoOptions>();
+  CLI::App& command =
+      program.add(name, what, [options, redo](const Common& common) { return undo(*options, redo, common); });
+  command.add_option("edit", options->edit, "the edit's id; concord history lists them")->required();
+  command.add_option("--author", options->author, "who asks; without it $USER");
+  command.add_option("--id", options->id, "of this request: asked again with it, it is done once");
 }
 
 }  // namespace
@@ -114,16 +110,19 @@ void add_edit(Program& program) {
   auto options = std::make_shared<Options>();
   CLI::App& pin = program.add("edit", "pins voxels of the map, above every sensor",
                               [options](const Common& common) { return edit(*options, common); });
-  pin.add_option("op", options->op, "add or delete")->required()->check(CLI::IsMember({"add", "delete"}));
-  auto* what = pin.add_option_group("selection", "what is pinned, in metres and the map frame");
-  what->add_option("--box", options->box,
-                   "\"x0 y0 z0 x1 y1 z1\", two opposite corners: every voxel that shares volume with it");
-  what->add_option("--line", options->line, "\"x y z x y z ...\": every voxel that it touches");
-  what->add_option("--area", options->area, "\"x y z x y z ...\", a polygon: every voxel that it touches");
-  what->add_option("--voxels", options->file, "a file with three indices a line, map lattice");
-  what->require_option(1);
-  pin.add_option("--thickness", options->thickness, "of a line or area: voxels within half of it are pinned too");
+  pin.add_option("op", options->op, "add pins occupied, delete pins free, move takes what is occupied elsewhere")
+      ->required()
+      ->check(CLI::IsMember({"add", "delete", "move"}));
+  add_shape_options(pin, options->selection);
+  pin.add_option("--move", options->move, "\"dx dy dz\": how far, with move; whole voxels of the map are moved");
+  pin.add_option("--base-revision", options->base_revision,
+                 "the revision that was seen: refused if others changed these voxels since")
+      ->check(CLI::NonNegativeNumber);
   pin.add_option("--author", options->author, "who edits; without it $USER");
+  pin.add_option("--id", options->id, "of the edit: asked again with it, it is done once");
+
+  add_undo(program, "undo", "takes an edit back, whatever came after it", false);
+  add_undo(program, "redo", "brings an edit back that was undone", true);
 }
 
 }  // namespace concord

@@ -2,9 +2,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/archive_info.hpp"
 #include "cli/command.hpp"
 #include "cli/map_file.hpp"
 #include "cli/numbers.hpp"
+#include "store/whole_file.hpp"
 
 namespace concord {
 namespace {
@@ -26,7 +28,17 @@ Bounds bounds_of(const BrickMap& map) {
   return bounds;
 }
 
+Outcome info_archive(const std::string& file, const Common& common) {
+  const auto bytes = read_whole_file(file, kMaxArchiveBytes);
+  if (!bytes) return fail(bytes.error());
+  const auto archive = read_map_archive(*bytes);
+  if (!archive) return fail({archive.error().code, file + ": " + archive.error().message});
+  common.print(to_json(*archive), to_words(*archive));
+  return Exit::kDone;
+}
+
 Outcome info(const std::string& file, const Common& common) {
+  if (std::filesystem::path(file).extension() == ".concord") return info_archive(file, common);
   const auto loaded = load_map(file);
   if (!loaded) return fail(loaded.error());
   const BrickMap& map = loaded->map;
@@ -62,7 +74,7 @@ Outcome info(const std::string& file, const Common& common) {
 void add_info(Program& program) {
   auto file = std::make_shared<std::string>();
   program.add("info", "what a map file holds", [file](const Common& common) { return info(*file, common); })
-      .add_option("file", *file, ".bt or .ot")
+      .add_option("file", *file, ".bt, .ot or .concord")
       ->required();
 }
 

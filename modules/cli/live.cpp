@@ -17,14 +17,20 @@ Live::Live(const Common& common)
       id_prefix_("cli-" + std::to_string(getpid()) + "-" + std::to_string(bus_.now()) + "-") {
   // Only what is ours is kept: others' answers are many.
   hear<Answer>(kAnswers, [this](const std::string&, Answer answer) {
-    if (answer.id.starts_with(id_prefix_)) answers_[answer.id] = std::move(answer);
+    if (is_ours(answer.id)) answers_[answer.id][answer.process] = std::move(answer);
   });
   hear<Path>("out/path/.*", [this](const std::string&, Path path) {
-    if (path.id.starts_with(id_prefix_)) paths_[path.id] = std::move(path);
+    if (is_ours(path.id)) paths_[path.id] = std::move(path);
   });
 }
 
 std::string Live::new_id() { return id_prefix_ + std::to_string(++next_id_); }
+
+std::string Live::id_or_new(const std::string& given) {
+  if (given.empty()) return new_id();
+  given_.insert(given);
+  return given;
+}
 
 bool Live::wait(double seconds, const std::function<bool()>& done) {
   const std::int64_t end = bus_.now() + std::llround(seconds * 1e6);
@@ -59,7 +65,14 @@ bool Live::ask_until(const std::string& channel, const Bytes& request, double se
 
 const Answer* Live::answer_to(const std::string& id) const {
   const auto it = answers_.find(id);
-  return it != answers_.end() ? &it->second : nullptr;
+  return it != answers_.end() ? &it->second.begin()->second : nullptr;
+}
+
+const Answer* Live::answer_to(const std::string& id, const std::string& process) const {
+  const auto by_process = answers_.find(id);
+  if (by_process == answers_.end()) return nullptr;
+  const auto it = by_process->second.find(process);
+  return it != by_process->second.end() ? &it->second : nullptr;
 }
 
 const Path* Live::path_for(const std::string& id) const {
@@ -72,10 +85,18 @@ tl::unexpected<Failure> Live::no_answer(const std::string& who) const {
               who + " did not answer in time; is the stack running on " + site_.lcm_url + "? (concord status)");
 }
 
+bool is_busy(const Answer& answer) { return !answer.ok && answer.code == name(Code::kBusy); }
+
+tl::unexpected<Failure> refused(const Answer& answer) {
+  return fail(Exit::kRefused, answer.code, answer.process + ": " + answer.message);
+}
+
 tl::expected<Answer, Failure> Live::ask(const std::string& channel, const Bytes& request, const std::string& id) {
-  if (!ask_until(channel, request, timeout_, [&] { return answer_to(id) != nullptr; })) return no_answer("the stack");
+  answers_.erase(id);  // a lease is asked for with one id again and again
+  ask_until(channel, request, timeout_, [&] { return answer_to(id) != nullptr && !is_busy(*answer_to(id)); });
+  if (answer_to(id) == nullptr) return no_answer("the stack");
   const Answer& answer = *answer_to(id);
-  if (!answer.ok) return fail(Exit::kRefused, answer.code, answer.process + ": " + answer.message);
+  if (!answer.ok) return refused(answer);
   return answer;
 }
 
@@ -131,8 +152,7 @@ tl::expected<Path, Failure> request_path(Live& live, const PathRequest& request)
     return live.no_answer("the planner");
   }
   if (const Path* path = live.path_for(request.id)) return *path;
-  const Answer& answer = *live.answer_to(request.id);
-  return fail(Exit::kRefused, answer.code, answer.process + ": " + answer.message);
+  return refused(*live.answer_to(request.id));
 }
 
 }  // namespace concord

@@ -3,6 +3,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "bus/brick_stream.hpp"
@@ -12,9 +13,6 @@
 #include "cli/command.hpp"
 
 namespace concord {
-
-/// What one edit may hold: lcmtypes/edit_t.lcm.
-inline constexpr std::int64_t kMaxEditVoxels = 1'000'000;
 
 /// Until then a request is sent again and again: datagrams get lost, and the stack does what it is asked once per id.
 inline constexpr std::int64_t kAskAgain = 300'000;
@@ -32,6 +30,8 @@ class Live {
 
   /// An id that nobody else uses.
   [[nodiscard]] std::string new_id();
+  /// `given`, whose answers are kept from now on; a new one if it is empty. @pre empty or is_name.
+  [[nodiscard]] std::string id_or_new(const std::string& given);
 
   /// Calls `take(channel, value)` with each good message; what is malformed is passed over.
   template <class T, class Take>
@@ -48,11 +48,13 @@ class Live {
   /// The same, publishing `request` on `channel` at once and until then every kAskAgain.
   bool ask_until(const std::string& channel, const Bytes& request, double seconds, const std::function<bool()>& done);
 
-  /// Asks and waits for the answer to `id`. Fails with what the stack refused it for, or kNoAnswer.
+  /// Asks and waits for the next answer to `id`; who is busy is asked again. Fails with what the stack refused it for,
+  /// or kNoAnswer.
   [[nodiscard]] tl::expected<Answer, Failure> ask(const std::string& channel, const Bytes& request,
                                                   const std::string& id);
-  /// The answer to one of our ids, once it has come.
+  /// The answer to one of our ids, once it has come; of this process, where several answer.
   [[nodiscard]] const Answer* answer_to(const std::string& id) const;
+  [[nodiscard]] const Answer* answer_to(const std::string& id, const std::string& process) const;
   /// The latest path for one of our ids; an active one is planned anew when the map changes.
   [[nodiscard]] const Path* path_for(const std::string& id) const;
   /// Nobody answered; what the caller can do about it.
@@ -65,7 +67,10 @@ class Live {
   LcmBus bus_;
   std::string id_prefix_;
   std::int64_t next_id_ = 0;
-  std::map<std::string, Answer> answers_;
+  [[nodiscard]] bool is_ours(const std::string& id) const { return id.starts_with(id_prefix_) || given_.contains(id); }
+
+  std::set<std::string> given_;
+  std::map<std::string, std::map<std::string, Answer>> answers_;  ///< by id and process, the latest of each
   std::map<std::string, Path> paths_;
 };
 
@@ -96,6 +101,11 @@ class StreamCopy {
 /// Waits for an agent's submap. Fails as StreamCopy::wait_synced does, and soon (kRefused) where there is none to wait
 /// for: no such agent (NO_AGENT), or one that has sent no submap (NO_MAP).
 [[nodiscard]] tl::expected<void, Failure> wait_for_submap(Live& live, StreamCopy& copy, const std::string& agent);
+
+/// An answer that is no last word: not now, ask again.
+[[nodiscard]] bool is_busy(const Answer& answer);
+/// What the stack said no to, as the client says it.
+[[nodiscard]] tl::unexpected<Failure> refused(const Answer& answer);
 
 /// Asks the running planner and prints the path.
 [[nodiscard]] Outcome ask_path(PathRequest request, const Common& common);

@@ -16,6 +16,11 @@ int main(int argc, char** argv) {
   concord::add_status(program);
   concord::add_agents(program);
   concord::add_edit(program);
+  concord::add_history(program);
+  concord::add_zones(program);
+  concord::add_leases(program);
+  concord::add_conflicts(program);
+  concord::add_agent_corrections(program);
   concord::add_requests(program);
   concord::add_saved_maps(program);
   concord::add_downsample(program);

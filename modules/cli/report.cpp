@@ -6,6 +6,13 @@
 #include "cli/numbers.hpp"
 
 namespace concord {
+namespace {
+
+std::string done(const Answer& answer) {
+  return answer.process + ": " + (answer.message.empty() ? "done" : answer.message);
+}
+
+}  // namespace
 
 tl::expected<AgentList, Failure> hear_agents(Live& live) {
   const auto list = std::make_shared<std::optional<AgentList>>();  // the subscription outlives this call
@@ -27,7 +34,14 @@ tl::unexpected<Failure> bad_name(const std::string& name) {
 
 Outcome print_answer(const tl::expected<Answer, Failure>& answer, const Common& common) {
   if (!answer) return tl::unexpected(answer.error());
-  common.print(to_json(*answer), answer->process + ": " + (answer->message.empty() ? "done" : answer->message));
+  common.print(to_json(*answer), done(*answer));
+  return Exit::kDone;
+}
+
+Outcome print_revision(const tl::expected<Answer, Failure>& answer, const Common& common) {
+  if (!answer) return tl::unexpected(answer.error());
+  common.print(to_json(*answer),
+               done(*answer) + "\nid " + answer->id + ", revision " + std::to_string(answer->revision));
   return Exit::kDone;
 }
 
@@ -65,11 +79,8 @@ nlohmann::json to_json(const Path& path) {
 }
 
 nlohmann::json to_json(const Answer& answer) {
-  return {{"process", answer.process},
-          {"code", answer.code},
-          {"message", answer.message},
-          {"revision", answer.revision},
-          {"count", answer.count}};
+  return {{"id", answer.id},           {"process", answer.process},   {"code", answer.code},
+          {"message", answer.message}, {"revision", answer.revision}, {"count", answer.count}};
 }
 
 std::string to_words(const Path& path) {

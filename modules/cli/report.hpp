@@ -17,6 +17,8 @@ namespace concord {
 [[nodiscard]] tl::unexpected<Failure> bad_name(const std::string& name);
 /// Prints what the stack did, or hands on its refusal.
 [[nodiscard]] Outcome print_answer(const tl::expected<Answer, Failure>& answer, const Common& common);
+/// The same of a correction: with its id, by which it can be found again, and its revision.
+[[nodiscard]] Outcome print_revision(const tl::expected<Answer, Failure>& answer, const Common& common);
 
 /// "x y z qx qy qz qw" as numbers.
 [[nodiscard]] std::array<double, 7> to_numbers(const Transform& transform);

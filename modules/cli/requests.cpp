@@ -26,7 +26,7 @@ Outcome set_transform(const Alignment& alignment, const Common& common) {
   Live live(common);
   const TransformRequest request{live.new_id(), author_or_user(alignment.author), alignment.agent, alignment.frame,
                                  *T_map_agent};
-  return print_answer(live.ask("in/transform", encode(request, live.bus().now()), request.id), common);
+  return print_revision(live.ask("in/transform", encode(request, live.bus().now()), request.id), common);
 }
 
 Outcome send_to(const Goal& goal, const Common& common) {

@@ -10,6 +10,7 @@
 #include "core/corrections.hpp"
 #include "core/error.hpp"
 #include "merge/edit_layer.hpp"
+#include "merge/region.hpp"
 
 namespace concord {
 
@@ -31,7 +32,8 @@ class Leases {
   /// Returns whether any was over.
   bool expire(std::int64_t now);
 
-  /// Refused (kLocked): one of the voxels has its centre in another author's lease.
+  /// Refused (kLocked): one of the voxels has its centre in another author's lease; or so many lie so near to some that
+  /// telling is dear, on the safe side.
   [[nodiscard]] Result<void> check(const PinnedBricks& voxels, const std::string& author, std::int64_t now) const;
   /// Refused (kLocked): the bounding box overlaps that of another author's lease.
   [[nodiscard]] Result<void> check(const Eigen::AlignedBox3d& bounds, const std::string& author,
@@ -43,12 +45,14 @@ class Leases {
  private:
   struct Held {
     Lease lease;
-    Eigen::AlignedBox3d bounds;
+    Eigen::AlignedBox3d bounds;  ///< in the map
+    TurnedBox turned;
     [[nodiscard]] bool bars(const std::string& author, std::int64_t now) const {
       return lease.author != author && lease.until > now;
     }
   };
-  [[nodiscard]] bool holds_any(const Held& held, BrickIndex index, const PinBrick& pins) const;
+  [[nodiscard]] bool may_hold(const Held& held, BrickIndex index) const;
+  [[nodiscard]] bool holds_any(const Held& held, BrickIndex index, const PinBrick& pins, std::int64_t& looks) const;
 
   double resolution_;
   std::map<std::string, Held> held_;

@@ -113,7 +113,7 @@ Result<std::int64_t> MapsNode::take(const MapRequest& request) {
   if (!corrections) return tl::unexpected(corrections.error());
   if (const auto there = check_layers(*archive, loading.incarnation); !there) return tl::unexpected(there.error());
   const auto count = static_cast<std::int64_t>(corrections->size());
-  if (const auto done = parts_.people_node.append(*corrections); !done) return tl::unexpected(done.error());
+  if (const auto done = parts_.people_node.commit(*corrections); !done) return tl::unexpected(done.error());
   return count;
 }
 

@@ -112,8 +112,6 @@ struct MergeStore::PutDetail {
   }
 };
 
-Result<void> MergeStore::put(const Correction& correction) { return put({&correction, 1}); }
-
 Result<void> MergeStore::put(std::span<const Correction> corrections) {
   auto transaction = Transaction::begin(database_);
   if (!transaction) return tl::unexpected(transaction.error());

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <span>
 
 #include "core/corrections.hpp"
 #include "store/database.hpp"
@@ -17,9 +18,7 @@ class MergeStore {
   MergeStore(const std::filesystem::path& file, double resolution);
 
   /// All of it or nothing, synced once. Refused (kIo): a full disk, say; nothing has changed then, and the next one
-  /// may succeed. @pre its revision and id are new.
-  [[nodiscard]] Result<void> put(const Correction& correction);
-  /// The same for many: all of them or none.
+  /// may succeed. @pre their revisions and ids are new.
   [[nodiscard]] Result<void> put(std::span<const Correction> corrections);
 
   /// Hands on each correction in the order of revisions. Refused (kIo): the file was damaged.

@@ -1,6 +1,7 @@
 #include "merge/people_node.hpp"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "bus/recent_answers.hpp"
@@ -78,7 +79,7 @@ void PeopleNode::hear(const std::string& channel, Check check) {
                     if (!what) return replies_.deny(on, request.id, what.error());
                     const Correction correction{people_.revision() + 1, request.id, request.author,
                                                 context_.bus.now(),     content,    std::move(*what)};
-                    if (const auto done = commit(correction); !done) {
+                    if (const auto done = commit({&correction, 1}); !done) {
                       return replies_.deny(on, request.id, done.error());
                     }
                     const Operation& made = people_.find(request.id)->operation;
@@ -113,28 +114,27 @@ Result<Correction::ZoneChange> PeopleNode::check(const ZoneRequest& request) {
   return people_.check(request, *T_map_frame, context_.bus.now());
 }
 
-Result<void> PeopleNode::commit(const Correction& correction) {
-  if (const auto stored = store_.put(correction); !stored) return stored;
-  follow(correction);
-  map_.refold_and_send();
-  return {};
-}
-
-Result<void> PeopleNode::append(const std::vector<Correction>& corrections) {
+Result<void> PeopleNode::commit(std::span<const Correction> corrections) {
   if (const auto stored = store_.put(corrections); !stored) return stored;
-  for (const Correction& correction : corrections) follow(correction);
+  follow(corrections);
   map_.refold_and_send();
   return {};
 }
 
-/// Makes it so, once it is stored.
-void PeopleNode::follow(const Correction& correction) {
+/// Makes it so, once it is stored: all of it first, so that a layer that was placed often is put into the map once.
+void PeopleNode::follow(std::span<const Correction> corrections) {
   BrickSet touched;
-  people_.apply(correction, touched);
+  std::set<std::string> agents;
+  bool has_zones = false;
+  for (const Correction& correction : corrections) {
+    people_.apply(correction, touched);
+    if (const auto* placement = std::get_if<Correction::Placement>(&correction.what)) agents.insert(placement->agent);
+    if (const auto* weight = std::get_if<Correction::Weight>(&correction.what)) agents.insert(weight->agent);
+    has_zones = has_zones || std::holds_alternative<Correction::ZoneChange>(correction.what);
+  }
   map_.layers().mark(touched);
-  if (const auto* placement = std::get_if<Correction::Placement>(&correction.what)) agents_.follow(placement->agent);
-  if (const auto* weight = std::get_if<Correction::Weight>(&correction.what)) agents_.follow(weight->agent);
-  if (std::holds_alternative<Correction::ZoneChange>(correction.what)) say_zones();
+  for (const std::string& agent : agents) agents_.follow(agent);
+  if (has_zones) say_zones();
 }
 
 void PeopleNode::on_lease(const LeaseRequest& request) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 
 #include "bus/list_stream.hpp"
@@ -26,8 +27,8 @@ class PeopleNode {
   /// the id is new.
   [[nodiscard]] bool repeat(const std::string& channel, const std::string& id, std::uint64_t content);
 
-  /// Corrections from a saved map: all or none. @pre they follow on what was made. Refused: kIo.
-  [[nodiscard]] Result<void> append(const std::vector<Correction>& corrections);
+  /// Stores, applies and shows corrections: all or none. @pre they follow on what was made. Refused: kIo.
+  [[nodiscard]] Result<void> commit(std::span<const Correction> corrections);
 
  private:
   /// Hears requests of one type; `check` says what one leads to, and may look at all there is.
@@ -38,8 +39,7 @@ class PeopleNode {
 
   [[nodiscard]] Result<Correction::Edit> check(const EditRequest& request);
   [[nodiscard]] Result<Correction::ZoneChange> check(const ZoneRequest& request);
-  [[nodiscard]] Result<void> commit(const Correction& correction);
-  void follow(const Correction& correction);
+  void follow(std::span<const Correction> corrections);
   void say_zones();
   void say_leases();
   void expire_leases();

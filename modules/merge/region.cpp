@@ -33,6 +33,13 @@ Eigen::AlignedBox3d bounds_in_map(const Volume& volume, const Transform& T_map_f
   return box;
 }
 
+TurnedBox turned_bounds(const Volume& volume, const Transform& T_map_frame) {
+  if (const auto* box = std::get_if<OrientedBox>(&volume)) {
+    return {(T_map_frame * box->T_frame_box).inverse(), {-0.5 * box->size, 0.5 * box->size}};
+  }
+  return {T_map_frame.inverse(), bounds_in_map(volume, Transform::Identity())};
+}
+
 bool overlap(const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b) {
   for (int axis = 0; axis < 3; ++axis) {
     const double shared = std::min(a.max()[axis], b.max()[axis]) - std::max(a.min()[axis], b.min()[axis]);

@@ -74,12 +74,13 @@ CloudMessage scan(std::int64_t utime, std::int64_t sequence) {
   return cloud;
 }
 
-std::vector<VoxelIndex> pane() {
-  std::vector<VoxelIndex> voxels;
-  for (int y = 20; y < 50; ++y) {
-    for (int z = 0; z < 40; ++z) voxels.push_back({60, y, z});
-  }
-  return voxels;
+EditRequest pane_of_glass(std::int64_t utime) {
+  EditRequest edit;
+  edit.id = "glass";
+  edit.author = "person";
+  edit.shape = VoxelList{kResolution, {{{60, 20, 0}, {60, 49, 39}}}};
+  edit.utime = utime;
+  return edit;
 }
 
 }  // namespace
@@ -111,7 +112,7 @@ std::vector<LogEvent> record_session() {
   const Bytes ask = encode(PathRequest{"path", "robot1", std::nullopt, {2.6, 4.2}, 0.1, true}, air.now());
   air.publish("in/path_request", ask);
   wait(0.2);
-  air.publish("in/edit", encode(EditRequest{"glass", "person", EditRequest::Op::kAdd, pane(), air.now()}, kResolution));
+  air.publish("in/edit", encode(pane_of_glass(air.now())));
   wait(1.2);
   return events;
 }

@@ -74,7 +74,7 @@ TEST_F(MergeStoreTest, EveryCorrectionComesBackToTheBit) {
   };
   {
     MergeStore store(file_, 0.1);
-    for (const Correction& correction : all) ASSERT_TRUE(store.put(correction));
+    for (const Correction& correction : all) ASSERT_TRUE(store.put({&correction, 1}));
   }
   const std::vector<Correction> back = read();
   ASSERT_EQ(back.size(), all.size());
@@ -168,10 +168,10 @@ TEST_F(MergeStoreTest, AnEmptyStoreOfTheFirstVersionIsBroughtUpToo) {
 TEST_F(MergeStoreTest, WhatIsRefusedLeavesNoTraceAndNoGap) {
   MergeStore store(file_, 0.1);
   const auto weight = [](std::int64_t revision, const std::string& id) {
-    return Correction{revision, id, "eva", 1, 1, Correction::Weight{"robot1", 5}};
+    return std::vector<Correction>{{revision, id, "eva", 1, 1, Correction::Weight{"robot1", 5}}};
   };
   ASSERT_TRUE(store.put(weight(1, "a")));
-  const std::vector<Correction> taken{weight(2, "b"), weight(3, "a")};
+  const std::vector<Correction> taken{weight(2, "b")[0], weight(3, "a")[0]};
   EXPECT_EQ(store.put(taken).error().code, Code::kIo);
   ASSERT_TRUE(store.put(weight(2, "c"))) << "the same revision";
   int count = 0;
@@ -188,7 +188,8 @@ TEST_F(MergeStoreTest, ADamagedRowIsToldNotGuessed) {
     std::filesystem::remove_all(folder_);
     {
       MergeStore store(file_, 0.1);
-      ASSERT_TRUE(store.put({1, "a", "eva", 1, 1, Correction::Placement{"r", "f", 1, true, turned(1, 1)}}));
+      const Correction one{1, "a", "eva", 1, 1, Correction::Placement{"r", "f", 1, true, turned(1, 1)}};
+      ASSERT_TRUE(store.put({&one, 1}));
     }
     run_sql(damage);
     MergeStore store(file_, 0.1);

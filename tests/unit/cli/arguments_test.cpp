@@ -40,5 +40,19 @@ TEST(Arguments, PointsAreThreeNumbersEach) {
   EXPECT_EQ(parse_points("1 2 nan").error().code, Code::kNotFinite);
 }
 
+TEST(Arguments, PointsFromAboveAreTwoNumbersEach) {
+  EXPECT_EQ(parse_points_2d("1 2, 3 4").value().at(1), Eigen::Vector2d(3, 4));
+  EXPECT_EQ(parse_points_2d("1 2 3").error().code, Code::kMalformed);
+  EXPECT_EQ(parse_points_2d("").error().code, Code::kMalformed);
+}
+
+TEST(Arguments, AnOrientedBoxIsItsPoseAndItsEdges) {
+  const OrientedBox box = parse_oriented_box("1 2 3 0 0 0.70710678 0.70710678 4 5 6").value();
+  EXPECT_EQ(box.size, Eigen::Vector3d(4, 5, 6));
+  EXPECT_TRUE((box.T_frame_box * Eigen::Vector3d(1, 0, 0)).isApprox(Eigen::Vector3d(1, 3, 3), 1e-6));
+  EXPECT_EQ(parse_oriented_box("1 2 3 0 0 0 0 4 5 6").error().code, Code::kBadTransform);
+  EXPECT_EQ(parse_oriented_box("1 2 3 0 0 0 1").error().code, Code::kMalformed);
+}
+
 }  // namespace
 }  // namespace concord

@@ -57,10 +57,9 @@ class Commands : public testing::Test {
 
   Ran run(const std::vector<std::string>& arguments) {
     Program program;
-    for (const auto add :
-         {add_info, add_merge, add_project, add_plan, add_edit, add_requests, add_downsample, add_up}) {
+    for (const auto add : {add_info, add_merge, add_project, add_plan, add_edit, add_requests, add_downsample, add_up,
+                           add_zones, add_leases, add_history, add_conflicts, add_agent_corrections, add_saved_maps})
       add(program);
-    }
     std::vector<const char*> argv = {"concord"};
     for (const std::string& argument : arguments) argv.push_back(argument.c_str());
     testing::internal::CaptureStdout();
@@ -284,6 +283,42 @@ TEST_F(Commands, AVoxelFileIsTakenWholeOrNotAtAll) {
   const Ran ran = run({"edit", "add", "--voxels", file("voxels.txt")});
   EXPECT_EQ(ran.exit, 2);
   EXPECT_NE(ran.err.find("TOO_LARGE"), std::string::npos) << ran.err;
+}
+
+TEST_F(Commands, WhatCannotBeMeantIsRefusedBeforeAnyoneIsAsked) {
+  const std::vector<std::vector<std::string>> wrong = {
+      {"edit", "add"},
+      {"edit", "add", "--box", "0 0 0 1 1 1", "--line", "0 0 0 1 1 1"},
+      {"edit", "add", "--box", "0 0 0 1 1 1", "--move", "1 0 0"},
+      {"edit", "move", "--box", "0 0 0 1 1 1"},
+      {"edit", "move", "--box", "0 0 0 1 1 1", "--move", "1 0"},
+      {"edit", "add", "--box", "0 0 0 1 1 1", "--thickness", "0.1"},
+      {"edit", "add", "--box", "0 0 0 1 1 1", "--id", "a/b"},
+      {"edit", "add", "--box", "0 0 0 1 1 1", "--base-revision", "-1"},
+      {"undo", "../edit"},
+      {"history", "--since", "yesterday"},
+      {"history", "--kind", "nonsense"},
+      {"history", "--export", "history.xml"},
+      {"zone", "add", "Pit", "--no-go"},
+      {"zone", "add", "Pit", "--box", "0 0 0 1 1 1"},
+      {"zone", "add", "Pit", "--box", "0 0 0 1 1 1", "--no-go", "--allow-contact"},
+      {"zone", "add", "Pit/1", "--box", "0 0 0 1 1 1", "--no-go"},
+      {"zone", "delete", "Pit", "--no-go"},
+      {"lease", "hold", "mine"},
+      {"lease", "free", "mine", "--for", "10"},
+      {"lease", "hold", "mine", "--box", "0 0 0 1 1 1", "--for", "nan"},
+      {"conflicts", "--most", "0"},
+      {"set-weight", "robot1", "0"},
+      {"localise", "robot1", "0 0 0 0 0 0 0"},
+      {"localise", "robot1", "0 0 0 0 0 0 1", "--at", "noon"},
+      {"load", "../map"},
+      {"save", "map", "--format", "png"},
+  };
+  for (const auto& arguments : wrong) {
+    std::string line;
+    for (const std::string& argument : arguments) line += " " + argument;
+    EXPECT_EQ(run(arguments).exit, 2) << line;
+  }
 }
 
 TEST_F(Commands, ASiteFileThatCannotBeUsedIsNamed) {

@@ -57,6 +57,30 @@ TEST_F(LiveTest, ARefusalIsThreeAndCarriesTheReason) {
   EXPECT_EQ(answered.error().message, "merge: no agent robot1");
 }
 
+TEST_F(LiveTest, WhoIsBusyIsAskedAgain) {
+  Live live(common);
+  const TransformRequest mine = request(live.new_id());
+  int heard = 0;
+  live.hear<TransformRequest>("in/transform", [&](const std::string&, const TransformRequest& asked) {
+    const bool ok = ++heard == 3;
+    answer(live.bus(), {asked.id, "merge", ok, ok ? "OK" : "BUSY", "not now", 0, 0});
+  });
+  EXPECT_TRUE(live.ask("in/transform", encode(mine, 0), mine.id));
+  EXPECT_EQ(heard, 3);
+}
+
+TEST_F(LiveTest, AnIdThatAPersonGaveIsHeeded) {
+  Live live(common);
+  EXPECT_EQ(live.id_or_new("mine"), "mine");
+  EXPECT_NE(live.id_or_new(""), "");
+  int heard = 0;
+  live.hear<TransformRequest>("in/transform", [&](const std::string&, const TransformRequest& asked) {
+    answer(live.bus(), {asked.id, "merge", true, "OK", "", ++heard, 0});
+  });
+  EXPECT_EQ(live.ask("in/transform", encode(request("mine"), 0), "mine")->revision, 1);
+  EXPECT_EQ(live.ask("in/transform", encode(request("mine"), 0), "mine")->revision, 2) << "not the answer of before";
+}
+
 TEST_F(LiveTest, AnAnswerToSomeoneElseIsNone) {
   common.timeout = 0.5;
   Live live(common);

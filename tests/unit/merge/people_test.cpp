@@ -171,6 +171,38 @@ TEST_F(PeopleTest, ALeaseIsRenewedMovedAndFreed) {
   EXPECT_EQ(edit(request("b", "tom", voxel({35, 35, 35}))), kOk);
 }
 
+TEST_F(PeopleTest, ThinTurnedLeasesKeepOutOfJustThemselves) {
+  OrientedBox pane{Transform::Identity(), {20, 0.3, 20}};
+  pane.T_frame_box.linear() = Eigen::AngleAxisd(M_PI / 4, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  ASSERT_EQ(hold("l", "eva", pane), kOk);
+  for (std::int32_t x = -30; x < 30; ++x) {
+    for (std::int32_t y = -30; y < 30; ++y) {
+      const bool held = contains(pane, Transform::Identity(), centre_of({x, y, 3}, kResolution));
+      const auto made = people_.check(request("a", "tom", voxel({x, y, 3})), T_, map_, now_);
+      ASSERT_EQ(!made, held) << x << ' ' << y;
+    }
+  }
+}
+
+TEST_F(PeopleTest, WhatIsDearToTellIsLocked) {
+  // A comb whose teeth miss all centres: every voxel is near, none is in it.
+  Prism comb{{}, -100, 100};
+  for (int i = 0; i < 15; ++i) {
+    comb.points.emplace_back(i * 0.6, 0.0);
+    comb.points.emplace_back(i * 0.6, 9.0);
+    comb.points.emplace_back(i * 0.6 + 0.01, 9.0);
+    comb.points.emplace_back(i * 0.6 + 0.01, 0.0);
+  }
+  comb.points.emplace_back(9.0, -0.01);
+  comb.points.emplace_back(0.0, -0.01);
+  ASSERT_TRUE(check(Volume(comb)));
+  const EditRequest large = request("a", "tom", voxels({{{0, 0, 0}, {78, 78, 78}}}));
+  ASSERT_EQ(hold("l0", "eva", comb), kOk);
+  EXPECT_TRUE(people_.check(large, T_, map_, now_)) << "one such lease is looked at";
+  for (int i = 1; i < 3; ++i) ASSERT_EQ(hold("l" + std::to_string(i), "eva", comb), kOk);
+  EXPECT_EQ(edit(large), Code::kLocked);
+}
+
 TEST_F(PeopleTest, LeasesAreBounded) {
   for (std::size_t i = 0; i < kMaxLeases; ++i) {
     ASSERT_EQ(hold("l" + std::to_string(i), "eva", box(2.0 * static_cast<double>(i), 2.0 * static_cast<double>(i) + 1)),

@@ -1,0 +1,114 @@
+#include "cli/history.hpp"
+
+#include "cli/extent.hpp"
+#include "cli/numbers.hpp"
+#include "cli/parts.hpp"
+#include "cli/table.hpp"
+#include "cli/times.hpp"
+
+namespace concord {
+namespace {
+
+/// Few enough that a page arrives in some tens of parts, of which lost ones are soon repeated.
+constexpr std::int64_t kPage = 1000;
+
+bool is_edit(const Operation& operation) {
+  return operation.kind == Operation::Kind::kAdd || operation.kind == Operation::Kind::kDelete ||
+         operation.kind == Operation::Kind::kMove;
+}
+
+Box extent(const Operation& operation, double resolution) { return extent(operation.min, operation.max, resolution); }
+
+/// A field of RFC 4180.
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string field = "\"";
+  for (const char c : text) field += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return field + "\"";
+}
+
+}  // namespace
+
+const char* name(Operation::Kind kind) {
+  switch (kind) {
+    case Operation::Kind::kAdd: return "add";
+    case Operation::Kind::kDelete: return "delete";
+    case Operation::Kind::kMove: return "move";
+    case Operation::Kind::kUndo: return "undo";
+    case Operation::Kind::kRedo: return "redo";
+    case Operation::Kind::kZoneAdd: return "zone-add";
+    case Operation::Kind::kZoneChange: return "zone-change";
+    case Operation::Kind::kZoneDelete: return "zone-delete";
+    case Operation::Kind::kTransform: return "transform";
+    case Operation::Kind::kWeight: return "weight";
+  }
+  return "";
+}
+
+tl::expected<std::vector<Operation>, Failure> request_history(Live& live, HistoryRequest request, std::int64_t most) {
+  std::vector<Operation> all;
+  for (;;) {
+    const std::int64_t left = most - static_cast<std::int64_t>(all.size());
+    const std::int64_t page = std::min(left, kPage);
+    if (page == 0) return all;
+    request.id = live.new_id();
+    request.most = static_cast<int>(page);
+    const Question question{"in/history_request", encode(request, live.bus().now()), request.id, "merge"};
+    const auto parts = ask_in_parts<HistoryPart>(live, question, "out/history");
+    if (!parts) return tl::unexpected(parts.error());
+    const std::size_t before = all.size();
+    for (const HistoryPart& part : *parts) {
+      for (const Operation& operation : part.operations) {
+        // Revisions ascend: what does not is a part of a later answer, whose operations a part before had already.
+        if (operation.revision > request.after_revision) all.push_back(operation);
+        request.after_revision = std::max(request.after_revision, operation.revision);
+      }
+    }
+    if (static_cast<std::int64_t>(all.size() - before) < page) return all;
+  }
+}
+
+nlohmann::json to_json(const std::vector<Operation>& operations, double resolution) {
+  nlohmann::json array = nlohmann::json::array();
+  for (const Operation& o : operations) {
+    array.push_back({{"revision", o.revision},
+                     {"id", o.id},
+                     {"author", o.author},
+                     {"utime", o.utime},
+                     {"time", format_utc_time(o.utime)},
+                     {"kind", name(o.kind)},
+                     {"subject", o.subject.empty() ? nlohmann::json() : nlohmann::json(o.subject)},
+                     {"voxels", o.count},
+                     {"undone", !o.active},
+                     {"bounds", is_edit(o) ? to_json(extent(o, resolution)) : nlohmann::json()}});
+  }
+  return {{"operations", array}};
+}
+
+std::string to_words(const std::vector<Operation>& operations, double resolution) {
+  std::vector<std::vector<std::string>> rows = {
+      {"revision", "time", "who", "what", "of", "voxels", kExtentHeading, "", "id"}};
+  for (const Operation& o : operations) {
+    rows.push_back({std::to_string(o.revision), format_local_time(o.utime), o.author, name(o.kind), o.subject,
+                    is_edit(o) ? format_count(o.count) : "", is_edit(o) ? to_words(extent(o, resolution)) : "",
+                    o.active ? "" : "undone", o.id});
+  }
+  return format_table(rows, "rllllrlll");
+}
+
+std::string to_csv(const std::vector<Operation>& operations, double resolution) {
+  std::string csv = "revision,time,author,kind,subject,id,voxels,undone,min_x,min_y,min_z,max_x,max_y,max_z\r\n";
+  for (const Operation& o : operations) {
+    csv += std::to_string(o.revision) + "," + format_utc_time(o.utime) + "," + quoted(o.author) + "," + name(o.kind) +
+           "," + quoted(o.subject) + "," + quoted(o.id) + "," + std::to_string(o.count) + "," +
+           (o.active ? "false" : "true");
+    const Box box = extent(o, resolution);
+    for (const Eigen::Vector3d* corner : {&box.min, &box.max}) {
+      for (int i = 0; i < 3; ++i) csv += "," + (is_edit(o) ? format_number((*corner)[i], 4) : "");
+    }
+    csv += "\r\n";
+  }
+  return csv;
+}
+
+}  // namespace concord

@@ -1,0 +1,133 @@
+// lease, leases: regions that people hold while they work in them.
+
+#include <cmath>
+#include <memory>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/end_request.hpp"
+#include "cli/extent.hpp"
+#include "cli/list_copy.hpp"
+#include "cli/numbers.hpp"
+#include "cli/report.hpp"
+#include "cli/selection_options.hpp"
+#include "cli/table.hpp"
+#include "cli/times.hpp"
+
+namespace concord {
+namespace {
+
+constexpr double kRenew = 3.0;     // seconds; it ends 10 s after it was held last
+constexpr double kFarewell = 2.0;  // seconds to be freed in, after which it is left to end by itself
+
+struct Options {
+  std::string op, id, author;
+  std::optional<double> seconds;
+  SelectionOptions selection;
+};
+
+tl::expected<Answer, Failure> ask(Live& live, LeaseRequest& request) {
+  request.utime = live.bus().now();
+  return live.ask("in/lease", encode(request), request.id);
+}
+
+/// Also when a person has ended the program, which no other wait outlasts. Returns whether merge has heard it.
+bool free_at_the_end(Live& live, LeaseRequest& request) {
+  request.hold = false;
+  request.utime = live.bus().now();
+  const auto freed = std::make_shared<bool>(false);  // the subscription outlives this call
+  live.hear<Answer>(kAnswers, [freed, id = request.id](const std::string&, const Answer& answer) {
+    *freed = *freed || answer.id == id;
+  });
+  const std::int64_t end = request.utime + std::llround(kFarewell * 1e6);
+  for (std::int64_t due = 0; !*freed && live.bus().now() < end; live.bus().spin_once(10)) {
+    if (live.bus().now() < due) continue;
+    live.bus().publish("in/lease", encode(request));
+    due = live.bus().now() + kAskAgain;
+  }
+  return *freed;
+}
+
+Outcome hold(const Options& options, LeaseRequest request, const Common& common) {
+  Live live(common);
+  request.id = live.id_or_new(request.id);
+  if (options.seconds) end_on_signals();
+  auto held = ask(live, request);
+  if (!held || !options.seconds) return print_answer(held, common);
+  if (!common.json) {
+    std::fprintf(stderr, "lease %s is held for %s s; Ctrl-C frees it\n", request.id.c_str(),
+                 format_number(*options.seconds, 0).c_str());
+  }
+  const std::int64_t end = live.bus().now() + std::llround(*options.seconds * 1e6);
+  while (held && live.bus().now() < end && !end_requested()) {
+    live.wait(std::min(kRenew, static_cast<double>(end - live.bus().now()) / 1e6), [] { return false; });
+    if (live.bus().now() < end && !end_requested()) held = ask(live, request);
+  }
+  if (!held && !end_requested()) return tl::unexpected(held.error());
+  const bool freed = free_at_the_end(live, request);
+  common.print({{"id", request.id}, {"freed", freed}},
+               "lease " + request.id + (freed ? " is freed" : " ends by itself in some seconds: nobody answered"));
+  return Exit::kDone;
+}
+
+Outcome lease(const Options& options, const Common& common) {
+  if (!is_name(options.id)) return bad_name(options.id);
+  LeaseRequest request;
+  request.id = options.id;
+  request.author = author_or_user(options.author);
+  request.hold = options.op == "hold";
+  request.frame = options.selection.frame;
+  if (!request.hold) {
+    if (options.seconds || is_given(options.selection)) {
+      return fail(Exit::kUnusable, "BAD_REQUEST", "lease free takes the id alone");
+    }
+    Live live(common);
+    request.id = live.id_or_new(request.id);
+    return print_answer(ask(live, request), common);
+  }
+  if (options.seconds && !std::isfinite(*options.seconds)) {  // CLI11 takes NaN for in range
+    return fail(Exit::kUnusable, name(Code::kNotFinite), "--for takes a number of seconds");
+  }
+  auto volume = volume_of(options.selection);
+  if (!volume) return fail(volume.error());
+  request.volume = std::move(*volume);
+  return hold(options, std::move(request), common);
+}
+
+Outcome leases(const Common& common) {
+  Live live(common);
+  ListCopy<Lease> copy(live, "out/leases");
+  const auto list = copy.wait_synced(live);
+  if (!list) return tl::unexpected(list.error());
+  nlohmann::json array = nlohmann::json::array();
+  std::vector<std::vector<std::string>> rows = {{"id", "who", "shape", kExtentHeading, "until"}};
+  for (const Lease& lease : *list) {
+    const Box around = extent(lease.volume, lease.T_map_lease);
+    array.push_back({{"id", lease.id},
+                     {"author", lease.author},
+                     {"volume", to_json(lease.volume, lease.T_map_lease)},
+                     {"bounds", to_json(around)},
+                     {"until", lease.until}});
+    rows.push_back({lease.id, lease.author, kind_of(lease.volume), to_words(around), format_local_time(lease.until)});
+  }
+  common.print({{"leases", array}}, list->empty() ? "no leases" : format_table(rows, "lllll"));
+  return Exit::kDone;
+}
+
+}  // namespace
+
+void add_leases(Program& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App& command = program.add("lease", "holds a region while someone works in it: others are refused there",
+                                  [options](const Common& common) { return lease(*options, common); });
+  command.add_option("op", options->op, "hold for 10 s, or free")->required()->check(CLI::IsMember({"hold", "free"}));
+  command.add_option("id", options->id, "the lease's: held again, it is renewed, and may move")->required();
+  add_volume_options(command, options->selection);
+  command.add_option("--for", options->seconds, "seconds: renews it until then or Ctrl-C, then frees it")
+      ->check(CLI::Range(1.0, 86'400.0));
+  command.add_option("--author", options->author, "who holds it; without it $USER");
+
+  program.add("leases", "the regions that are held now", leases);
+}
+
+}  // namespace concord

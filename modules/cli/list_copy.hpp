@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bus/list_stream.hpp"
+#include "cli/live.hpp"
+
+namespace concord {
+
+/// A copy of one list stream of the running stack. Must live as long as `live` handles messages.
+template <class T>
+class ListCopy {
+ public:
+  ListCopy(Live& live, const std::string& list)
+      : list_(list), receiver_(live.bus(), live.counters(), list, [](const std::vector<T>&) {}) {
+    live.hear<ListDigest>(ListChannels(list).digest, [this](const std::string&, const ListDigest&) { heard_ = true; });
+  }
+
+  /// The list, whole. Fails with kNoAnswer when nobody speaks, with kIncomplete when it did not arrive whole in time.
+  [[nodiscard]] tl::expected<std::vector<T>, Failure> wait_synced(Live& live) {
+    if (live.wait(live.timeout(), [this] { return receiver_.synced(); })) return receiver_.items();
+    if (!heard_) return live.no_answer("merge");
+    return fail(Exit::kIncomplete, "INCOMPLETE", list_ + " has not arrived whole; give a longer --timeout");
+  }
+
+ private:
+  std::string list_;
+  bool heard_ = false;
+  ListReceiver<T> receiver_;
+};
+
+}  // namespace concord

@@ -1,0 +1,66 @@
+#include "cli/load_archive.hpp"
+
+#include <memory>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/report.hpp"
+
+namespace concord {
+namespace {
+
+bool is_refusal(const Answer* answer) { return answer != nullptr && !answer->ok && !is_busy(*answer); }
+bool is_done(const Answer* answer) { return answer != nullptr && answer->ok; }
+
+/// What merge holds of all agents: grows while layers arrive.
+std::shared_ptr<std::int64_t> watch_layers(Live& live) {
+  auto held = std::make_shared<std::int64_t>(0);
+  live.hear<AgentList>("out/agents", [held](const std::string&, const AgentList& list) {
+    *held = 0;
+    for (const AgentState& agent : list.agents) *held += agent.known + agent.revision;
+  });
+  return held;
+}
+
+tl::unexpected<Failure> not_loaded(Live& live, const MapRequest& request) {
+  const Answer* ingest = live.answer_to(request.id, "ingest");
+  const Answer* merge = live.answer_to(request.id, "merge");
+  if (ingest == nullptr && merge == nullptr) return live.no_answer("the stack");
+  if (ingest == nullptr) return live.no_answer("ingest");
+  if (merge == nullptr) return live.no_answer("merge");
+  return fail(
+      Exit::kIncomplete, name(Code::kBusy),
+      merge->process + ": " + merge->message + "; ask again with --id " + request.id + " and a longer --timeout");
+}
+
+}  // namespace
+
+Outcome load_archive(Live& live, const MapRequest& request, const Common& common) {
+  if (!request.agent.empty()) {
+    return fail(Exit::kUnusable, "BAD_REQUEST",
+                "the layers of a .concord file keep their ids: --agent does not go with it");
+  }
+  const auto ingest = [&] { return live.answer_to(request.id, "ingest"); };
+  const auto merge = [&] { return live.answer_to(request.id, "merge"); };
+  const Bytes message = encode(request, live.bus().now());
+  const auto held = watch_layers(live);
+  std::int64_t due = 0;
+  live.wait_while_moving(
+      live.timeout(), [&] { return *held; },
+      [&] {
+        if (is_refusal(ingest()) || is_refusal(merge()) || (is_done(ingest()) && is_done(merge()))) return true;
+        if (live.bus().now() >= due) {
+          live.bus().publish("in/map_request", message);
+          due = live.bus().now() + kAskAgain;
+        }
+        return false;
+      });
+  if (is_refusal(ingest())) return refused(*ingest());
+  if (is_refusal(merge())) return refused(*merge());
+  if (!is_done(ingest()) || !is_done(merge())) return not_loaded(live, request);
+  common.print({{"id", request.id}, {"ingest", to_json(*ingest())}, {"merge", to_json(*merge())}},
+               "ingest: " + ingest()->message + "\nmerge: " + merge()->message);
+  return Exit::kDone;
+}
+
+}  // namespace concord
