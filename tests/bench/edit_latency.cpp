@@ -7,6 +7,7 @@
 #include <fstream>
 #include <memory>
 #include <random>
+#include <set>
 #include <stdexcept>
 
 #include <sys/prctl.h>
@@ -103,17 +104,12 @@ class Echo {
 /// A person's end of both, on one LCM socket.
 class Person {
  public:
+  /// LCM opens its sockets where it is first made to listen.
   explicit Person(const test::Host& host) {
-    host.inside([this] { lcm_ = std::make_unique<lcm::LCM>(test::kUrl); });
-    lcm_->subscribeFunction<int*>(
-        "bench/pong", [](const lcm::ReceiveBuffer*, const std::string&, int* count) { ++*count; }, &pongs_);
-    lcm_->subscribeFunction<Person*>(
-        "out/map/bricks",
-        [](const lcm::ReceiveBuffer* buffer, const std::string&, Person* self) {
-          const auto packet = decode<BrickPacket>({static_cast<const std::uint8_t*>(buffer->data), buffer->data_size});
-          if (packet) self->version_ = std::max(self->version_, packet->last_version);
-        },
-        this);
+    host.inside([this] {
+      lcm_ = std::make_unique<lcm::LCM>(test::kUrl);
+      listen();
+    });
   }
 
   /// Microseconds.
@@ -127,6 +123,16 @@ class Person {
   }
 
  private:
+  void listen() {
+    const auto count = [](const lcm::ReceiveBuffer*, const std::string&, int* pongs) { ++*pongs; };
+    lcm_->subscribeFunction<int*>("bench/pong", count, &pongs_);
+    const auto note_version = [](const lcm::ReceiveBuffer* buffer, const std::string&, std::int64_t* version) {
+      const auto packet = decode<BrickPacket>({static_cast<const std::uint8_t*>(buffer->data), buffer->data_size});
+      if (packet) *version = std::max(*version, packet->last_version);
+    };
+    lcm_->subscribeFunction<std::int64_t*>("out/map/bricks", note_version, &version_);
+  }
+
   template <class Happened>
   double timed(const char* channel, const Bytes& bytes, Happened happened) {
     const auto start = Clock::now();
@@ -164,6 +170,25 @@ void bring_up(const test::Host& host, const BrickMap& map, test::Station& robot,
   if (!test::eventually({&robot.bus(), &copy.bus()}, done)) throw std::runtime_error("the map did not come up");
 }
 
+/// Voxels all over the map where adding one changes it.
+class Places {
+ public:
+  explicit Places(const BrickMap& map) : map_(map), bricks_(map.sorted_bricks()) {}
+  VoxelIndex next() {
+    for (;;) {
+      const VoxelIndex voxel =
+          voxel_at(bricks_[random_() % bricks_.size()], static_cast<int>(random_() % kBrickVoxels));
+      if (!is_occupied(map_.at(voxel)) && taken_.insert(voxel).second) return voxel;
+    }
+  }
+
+ private:
+  const BrickMap& map_;
+  std::vector<BrickIndex> bricks_;
+  std::set<VoxelIndex> taken_;
+  std::mt19937 random_{2};
+};
+
 EditRequest one_voxel(int number, VoxelIndex voxel) {
   EditRequest request;
   request.id = "bench-" + std::to_string(number);
@@ -181,8 +206,8 @@ Latency latency_of(std::vector<double> samples) {
 
 EditLatency measure_edits(std::int64_t voxels, const std::filesystem::path& state) {
   const Folder folder(state);
-  test::Network network;
-  const test::Host& host = network.add("bench");
+  const test::Host host("bench");
+  host.run("ip route add 224.0.0.0/4 dev lo");
   const std::string site = folder.path() / "site.yaml";
   const auto start = [&](const std::string& name) {
     return test::Process(host, {std::string(kPrograms) + "/concord-" + name, "--site", site}, folder.path() / "log");
@@ -200,12 +225,10 @@ EditLatency measure_edits(std::int64_t voxels, const std::filesystem::path& stat
   bring_up(host, map, robot, *publisher);
 
   Person person(host);
-  std::mt19937 random(2);
-  const std::vector<BrickIndex> bricks = map.sorted_bricks();
+  Places places(map);
   std::vector<double> round_trips, edits;
   for (int i = 0; i < kWarmUp + kRounds; ++i) {
-    const BrickIndex brick = bricks[random() % bricks.size()];
-    const EditRequest request = one_voxel(i, voxel_at(brick, static_cast<int>(random() % kBrickVoxels)));
+    const EditRequest request = one_voxel(i, places.next());
     const double ping = person.ping(encode(request));
     const double edit = person.edit(request);
     if (i >= kWarmUp) {
