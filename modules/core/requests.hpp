@@ -11,8 +11,9 @@
 
 namespace concord {
 
-/// What people, robots and programs ask for, beside corrections (core/corrections.hpp). Each is a value the bus has already checked (names on the whitelist,
-/// numbers finite, sizes capped); `id` is the asker's, and a request sent twice with one id is done once.
+/// What people, robots and programs ask for, beside corrections (core/corrections.hpp). Each is a value the bus has
+/// already checked (names on the whitelist, numbers finite, sizes capped); `id` is the asker's, and a request sent
+/// twice with one id is done once.
 
 /// Puts an agent's submap into the map.
 struct TransformRequest {

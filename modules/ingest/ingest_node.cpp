@@ -216,6 +216,7 @@ void IngestNode::write_some() {
 
 void IngestNode::count() {
   counters_.set("agents", static_cast<std::int64_t>(ingest_.agents().size()));
+  counters_.set("agents_to_write", static_cast<std::int64_t>(store_.to_write()));
   for (const auto& [id, agent] : ingest_.agents()) counters_.set("known." + id, agent.known());
   for (const auto& [id, input] : inputs_) {
     if (input.lacking || counters_.get("lacking." + id) != 0) counters_.set("lacking." + id, input.lacking ? 1 : 0);

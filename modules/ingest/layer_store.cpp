@@ -136,7 +136,7 @@ Result<void> LayerStore::introduce(const std::string& id, const Agent& agent) {
 void LayerStore::note(const std::string& id, BrickIndex index) { pending_[id].bricks.insert(index); }
 
 Result<void> LayerStore::flush(const std::map<std::string, Agent>& agents) {
-  while (!is_flushed()) {
+  while (!pending_.empty()) {
     if (auto done = write_some(agents); !done) return done;
   }
   return {};

@@ -43,7 +43,8 @@ class LayerStore {
   /// The agent changed in memory; it will be written.
   void note(const std::string& id, const Agent& agent, const Change& change);
   void note(const std::string& id, BrickIndex index);
-  [[nodiscard]] bool is_flushed() const { return pending_.empty(); }
+  /// Agents whose changes are not all on disk.
+  [[nodiscard]] std::size_t to_write() const { return pending_.size(); }
   /// Nothing is to be written, and nothing that is void is still there.
   [[nodiscard]] bool is_idle() const { return pending_.empty() && void_layers_.empty(); }
 

@@ -135,6 +135,9 @@ void AgentsNode::on_pose(const std::string& channel, AgentPose pose) {
 Result<const AgentsNode::Agent*> AgentsNode::agent_in(const std::string& id, const std::string& frame_id) const {
   const auto it = agents_.find(id);
   if (it == agents_.end() || it->second.frame_id.empty()) {
+    if (awaited_.contains(id) && !map_.begun()) {
+      return refuse(Code::kBusy, "agent " + id + " has not been heard since merge began; ask again in a second");
+    }
     return refuse(Code::kNoAgent, "no agent " + id + " has been heard; see: concord agents");
   }
   if (!frame_id.empty() && frame_id != it->second.frame_id) {

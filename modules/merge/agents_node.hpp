@@ -21,11 +21,11 @@ class AgentsNode {
  public:
   AgentsNode(const NodeContext& context, const People& people, MapStreams& map);
 
-  /// Where a person's work frame lies in the map. Refused: nobody of this name is there (kNoAgent); it is in another
-  /// frame now (kBadFrame); nobody placed it (kNotAligned).
+  /// Where a person's work frame lies in the map. Refused: nobody of this name is there (kNoAgent), or not yet after a
+  /// restart (kBusy); it is in another frame now (kBadFrame); nobody placed it (kNotAligned).
   [[nodiscard]] Result<Transform> T_map_frame(const WorkFrame& frame) const;
 
-  /// What these requests lead to. Refused: kNoAgent, kBadFrame; where some of its layer would lie beyond the map
+  /// What these requests lead to. Refused: kNoAgent, kBusy, kBadFrame; where some of its layer would lie beyond the map
   /// (kOutOfBounds); for a robot that was seen also no pose of that time (kStale), and what T_map_frame refuses.
   [[nodiscard]] Result<Correction::Placement> check(const TransformRequest& request) const;
   [[nodiscard]] Result<Correction::Placement> check(const LocaliseRequest& request) const;

@@ -10,7 +10,7 @@
 #include "merge/merge_store.hpp"
 #include "merge/people.hpp"
 #include "merge/people_node.hpp"
-#include "merge/replies.hpp"
+#include "bus/replies.hpp"
 
 namespace concord {
 

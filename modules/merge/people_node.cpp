@@ -102,8 +102,10 @@ bool PeopleNode::repeat(const std::string& channel, const std::string& id, std::
 Result<Correction::Edit> PeopleNode::check(const EditRequest& request) {
   const auto T_map_frame = agents_.T_map_frame(request.frame);
   if (!T_map_frame) return tl::unexpected(T_map_frame.error());
-  // What is occupied now, not 20 ms ago.
-  if (request.op == EditRequest::Op::kMove) map_.refold_and_send();
+  if (request.op == EditRequest::Op::kMove) {
+    if (!map_.begun()) return refuse(Code::kBusy, "the map is not whole again after a restart; ask again in a second");
+    map_.refold_and_send();  // what is occupied now, not 20 ms ago
+  }
   return people_.check(request, *T_map_frame, map_.layers().map(), context_.bus.now());
 }
 

@@ -10,7 +10,7 @@
 #include "merge/map_streams.hpp"
 #include "merge/merge_store.hpp"
 #include "merge/people.hpp"
-#include "merge/replies.hpp"
+#include "bus/replies.hpp"
 
 namespace concord {
 

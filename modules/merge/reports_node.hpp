@@ -7,7 +7,7 @@
 #include "merge/map_streams.hpp"
 #include "merge/part_queue.hpp"
 #include "merge/people.hpp"
-#include "merge/replies.hpp"
+#include "bus/replies.hpp"
 
 namespace concord {
 

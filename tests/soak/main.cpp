@@ -50,7 +50,8 @@ int main(int argc, char** argv) {
                    refusal.c_str());
       return 2;
     }
-    const concord::soak::Outcome outcome = concord::soak::run(plan);
+    concord::test::Network network;
+    const concord::soak::Outcome outcome = concord::soak::run(plan, network);
     print(plan, outcome, json);
     return outcome.good() ? 0 : 1;
   } catch (const std::exception& error) {

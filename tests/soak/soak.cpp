@@ -53,11 +53,11 @@ void judge(const std::map<std::string, Said>& said, const std::vector<Operation>
 /// Everybody and everything of one soak.
 class Session {
  public:
-  explicit Session(const Plan& plan)
+  Session(const Plan& plan, test::Network& network)
       : plan_(plan),
-        stack_(network_, "resolution: " + std::to_string(kResolution) + "\n"),
-        people_(network_.add("people")),
-        field_(network_.add("robots")),
+        stack_(network, "resolution: " + std::to_string(kResolution) + "\n"),
+        people_(network.add("people")),
+        field_(network.add("robots")),
         station_(people_),
         crowd_(make_crowd()),
         script_(plan.seed),
@@ -86,6 +86,7 @@ class Session {
       oracle.apply(request);
     }
     if (!becomes_equal(oracle)) throw std::runtime_error(outcome_.complaints.back() + "\n" + stack_.logs());
+    wait_until_on_disk();
     outcome_.refused = 0;
     outcome_.refusals.clear();
   }
@@ -116,6 +117,22 @@ class Session {
   [[nodiscard]] Outcome& outcome() { return outcome_; }
 
  private:
+  /// Ingest may lose what it received in the last seconds, for robots to send again; here the submaps stand still.
+  void wait_until_on_disk() {
+    const auto from = station_.bus().now();
+    const auto done = std::make_shared<bool>(false);
+    people_.inside([&] {
+      listen<ProcessStatus>(
+          station_.bus(), station_.counters(), "soak", "out/status/ingest",
+          [done, from](const std::string&, const ProcessStatus& status) {
+            const auto count = status.counters.find("agents_to_write");
+            if (status.utime > from && count != status.counters.end() && count->second == 0) *done = true;
+          },
+          done);
+    });
+    if (!test::eventually(buses(), [&] { return *done; })) throw std::runtime_error("ingest did not write the submaps");
+  }
+
   std::unique_ptr<Crowd> make_crowd() {
     std::unique_ptr<Crowd> crowd;
     people_.inside([&] {
@@ -163,7 +180,6 @@ class Session {
 
   Plan plan_;
   Outcome outcome_;
-  test::Network network_;
   test::Stack stack_;
   test::Host& people_;
   test::Host& field_;
@@ -179,9 +195,9 @@ class Session {
 
 }  // namespace
 
-Outcome run(const Plan& plan) {
+Outcome run(const Plan& plan, test::Network& network) {
   const auto start = std::chrono::steady_clock::now();
-  Session session(plan);
+  Session session(plan, network);
   session.open();
   session.work();
   session.compare();

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "network.hpp"
+
 namespace concord::soak {
 
 struct Plan {
@@ -30,7 +32,7 @@ struct Outcome {
 };
 
 /// Real processes on hosts of their own, people who edit, undo, fence off and re-align all at once, and a process
-/// killed as by a power cut at random moments. @pre enter_private_network() succeeded.
-[[nodiscard]] Outcome run(const Plan& plan);
+/// killed as by a power cut at random moments.
+[[nodiscard]] Outcome run(const Plan& plan, test::Network& network);
 
 }  // namespace concord::soak

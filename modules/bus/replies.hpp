@@ -8,7 +8,7 @@
 
 namespace concord {
 
-/// What merge answers to who asked.
+/// What a process answers to who asked.
 class Replies {
  public:
   explicit Replies(const NodeContext& context) : context_(context) {}
