@@ -2,6 +2,7 @@
 
 #include "bus/process.hpp"
 #include "bus/recent_answers.hpp"
+#include "bus/replies.hpp"
 #include "core/correction_check.hpp"
 #include "core/map_archive.hpp"
 #include "merge/agents_node.hpp"
@@ -10,7 +11,6 @@
 #include "merge/merge_store.hpp"
 #include "merge/people.hpp"
 #include "merge/people_node.hpp"
-#include "bus/replies.hpp"
 
 namespace concord {
 

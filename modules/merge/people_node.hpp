@@ -6,11 +6,11 @@
 
 #include "bus/list_stream.hpp"
 #include "bus/process.hpp"
+#include "bus/replies.hpp"
 #include "merge/agents_node.hpp"
 #include "merge/map_streams.hpp"
 #include "merge/merge_store.hpp"
 #include "merge/people.hpp"
-#include "bus/replies.hpp"
 
 namespace concord {
 

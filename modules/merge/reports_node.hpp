@@ -4,10 +4,10 @@
 #include <string>
 
 #include "bus/process.hpp"
+#include "bus/replies.hpp"
 #include "merge/map_streams.hpp"
 #include "merge/part_queue.hpp"
 #include "merge/people.hpp"
-#include "bus/replies.hpp"
 
 namespace concord {
 
