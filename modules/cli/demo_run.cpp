@@ -51,7 +51,7 @@ Outcome DemoRun::run() {
     if (!done) return tl::unexpected(done.error());
   }
   if (!options_.headless) show();
-  return report_.complete() ? Exit::kDone : Exit::kIncomplete;
+  return report_.streams_whole ? Exit::kDone : Exit::kIncomplete;
 }
 
 DemoRun::Step DemoRun::prepare() {
