@@ -59,7 +59,7 @@ void for_each_column(const Columns& columns, Visit&& visit) {
 /// larger on the page, as with the few returns from beyond a room's windows.
 std::pair<std::int32_t, std::int32_t> trimmed(std::vector<std::int32_t>& values) {
   std::ranges::sort(values);
-  const std::size_t few = values.size() / 500, more = values.size() / 50, last = values.size() - 1;
+  const std::size_t few = values.size() / 500, more = values.size() / 200, last = values.size() - 1;
   const std::int32_t worth = (values[last - few] - values[few]) / 6;
   return {values[values[more] - values[few] > worth ? more : few],
           values[last - (values[last - few] - values[last - more] > worth ? more : few)]};

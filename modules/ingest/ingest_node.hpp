@@ -9,10 +9,10 @@
 #include "bus/messages.hpp"
 #include "bus/process.hpp"
 #include "bus/recent_answers.hpp"
+#include "bus/reply_queue.hpp"
 #include "ingest/agent_streams.hpp"
 #include "ingest/ingest.hpp"
 #include "ingest/layer_store.hpp"
-#include "ingest/paced_queue.hpp"
 
 namespace concord {
 
@@ -73,7 +73,7 @@ class IngestNode {
   Ingest ingest_;
   LayerStore store_;
   AgentStreams streams_;
-  PacedQueue replies_;
+  ReplyQueue replies_;
   RecentAnswers answers_;
   std::map<std::string, Input> inputs_;
   std::map<std::string, std::int64_t> said_over_;  ///< when an agent was last told that its frame is over

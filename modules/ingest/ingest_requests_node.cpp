@@ -15,7 +15,6 @@ namespace {
 
 /// A part of an answer fits one frame on the wire: 90 points are 1080 bytes.
 constexpr std::size_t kPointsInPart = 90;
-constexpr std::size_t kMaxQueuedReplies = 50'000;
 constexpr double kMaxCell = 10.0;  // metres
 
 tl::unexpected<Error> unknown_agent(const std::string& id) {
@@ -155,7 +154,7 @@ Result<std::int64_t> IngestNode::downsample(const DownsampleRequest& request) {
   }
   const std::vector<Eigen::Vector3f> points = concord::downsample(agent->layer, site_.resolution, request.resolution);
   const std::size_t parts = std::max<std::size_t>(1, (points.size() + kPointsInPart - 1) / kPointsInPart);
-  if (replies_.size() + parts > kMaxQueuedReplies) {
+  if (!replies_.has_room(parts + 1)) {
     return refuse(Code::kTooLarge, "too many points; ask for a coarser resolution, or later");
   }
   for (std::size_t part = 0; part < parts; ++part) {

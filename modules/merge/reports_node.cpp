@@ -23,6 +23,7 @@ ReportsNode::ReportsNode(const NodeContext& context, const People& people, MapSt
 }
 
 void ReportsNode::on_history(const HistoryRequest& request) {
+  if (queue_.waits(request.id)) return;
   HistoryPart whole{request.id, 0, 1, people_.history(request)};
   const auto count = static_cast<std::int64_t>(whole.operations.size());
   tell(kHistoryRequests, "out/history", in_parts(std::move(whole)),
@@ -30,6 +31,7 @@ void ReportsNode::on_history(const HistoryRequest& request) {
 }
 
 void ReportsNode::on_conflicts(const ConflictRequest& request) {
+  if (queue_.waits(request.id)) return;
   map_.refold_and_send();
   ConflictReport report = report_conflicts(map_.layers(), static_cast<std::size_t>(request.most));
   ConflictList whole{request.id, 0, 1, report.regions_in_all, report.voxels_in_all, std::move(report.regions)};
@@ -45,8 +47,8 @@ void ReportsNode::tell(const std::string& asked_on, const std::string& channel, 
   if (!queue_.has_room(parts.size() + 1)) {
     return replies_.deny(asked_on, answer.id, {Code::kBusy, "earlier reports are still being told; ask again"});
   }
-  for (const Part& part : parts) queue_.push(channel, encode(part, context_.bus.now()));
-  queue_.push(kAnswers, encode(answer, context_.bus.now()));
+  for (const Part& part : parts) queue_.push(answer.id, channel, encode(part, context_.bus.now()));
+  queue_.push(answer.id, kAnswers, encode(answer, context_.bus.now()));
   queue_.send_now();
 }
 

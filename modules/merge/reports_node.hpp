@@ -5,8 +5,8 @@
 
 #include "bus/process.hpp"
 #include "bus/replies.hpp"
+#include "bus/reply_queue.hpp"
 #include "merge/map_streams.hpp"
-#include "merge/part_queue.hpp"
 #include "merge/people.hpp"
 
 namespace concord {
@@ -29,7 +29,7 @@ class ReportsNode {
   const People& people_;
   MapStreams& map_;
   Replies replies_;
-  PartQueue queue_;
+  ReplyQueue queue_;
 };
 
 }  // namespace concord
