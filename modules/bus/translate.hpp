@@ -12,6 +12,7 @@
 
 #include "bus/messages.hpp"
 #include "bus/wire_layout.hpp"
+#include "core/text.hpp"
 #include "core/transform.hpp"
 
 namespace concord::wire {
@@ -57,11 +58,8 @@ template <class Lcm>
   return bad(Error{code, std::move(message)}, std::move(id));
 }
 
-/// What people give and get back in answers, logs and lists.
-[[nodiscard]] inline bool is_printable(const std::string& text) {
-  return std::none_of(text.begin(), text.end(), [](char c) { return (c >= 0 && c < 0x20) || c == 0x7F; });
-}
-[[nodiscard]] inline bool is_request_id(const std::string& id) { return !id.empty() && is_printable(id); }
+using concord::is_printable;
+using concord::is_request_id;
 
 [[nodiscard]] inline tl::unexpected<BadMessage> bad_id() {
   return bad(Code::kBadRequest, "request id must be 1 to 80 printable characters");

@@ -1,29 +1,12 @@
 #include "bus/wire_layout.hpp"
 
 #include <optional>
+#include <string_view>
+
+#include "core/text.hpp"
 
 namespace concord {
 namespace {
-
-/// Well-formed UTF-8 (RFC 3629) without zero bytes, at which LCM's encoder would cut: what JSON, logs and databases may
-/// be given.
-bool is_utf8(std::span<const std::uint8_t> text) {
-  while (!text.empty()) {
-    const std::uint8_t lead = text.front();
-    const std::size_t length = lead < 0x80 ? 1 : lead >= 0xC2 && lead < 0xE0 ? 2 : lead >= 0xE0 && lead < 0xF0 ? 3 : 4;
-    if (lead == 0 || (lead >= 0x80 && lead < 0xC2) || lead > 0xF4 || length > text.size()) return false;
-    std::uint32_t code = length == 1 ? lead : lead & (0x7Fu >> length);
-    for (std::size_t i = 1; i < length; ++i) {
-      if ((text[i] & 0xC0) != 0x80) return false;
-      code = code << 6 | (text[i] & 0x3Fu);
-    }
-    const bool overlong = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
-    const bool surrogate = code >= 0xD800 && code < 0xE000;
-    if (overlong || surrogate || code > 0x10FFFF) return false;
-    text = text.subspan(length);
-  }
-  return true;
-}
 
 /// Walks a message; stops at the first thing that is not so.
 class Walk {
@@ -87,7 +70,8 @@ class Walk {
     if (!length || *length < 1) return false;
     if (*length - 1 > most) return fail_too_large();
     const auto size = static_cast<std::size_t>(*length);
-    if (size > rest_.size() || rest_[size - 1] != 0 || !is_utf8(rest_.first(size - 1))) return false;
+    if (size > rest_.size() || rest_[size - 1] != 0) return false;
+    if (!is_utf8({reinterpret_cast<const char*>(rest_.data()), size - 1})) return false;
     return skip(*length);
   }
 

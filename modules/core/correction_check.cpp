@@ -1,22 +1,17 @@
 #include "core/correction_check.hpp"
 
 #include <algorithm>
-#include <string_view>
 #include <vector>
 
 #include "core/requests.hpp"
+#include "core/text.hpp"
 
 namespace concord {
 namespace {
 
-constexpr std::size_t kLongestText = 80;  // bytes of an id or an author
+constexpr std::size_t kLongestAuthor = 80;  // bytes
 constexpr double kRotationError = 1e-6;
 constexpr double kFarthestPlacement = 10'000.0;  // metres, as make_transform takes
-
-bool is_printable(std::string_view text) {
-  return text.size() <= kLongestText &&
-         std::none_of(text.begin(), text.end(), [](char c) { return (c >= 0 && c < 0x20) || c == 0x7F; });
-}
 
 Result<void> check_transform(const Transform& T) {
   const Eigen::Matrix3d R = T.linear();
@@ -149,8 +144,10 @@ struct CorrectionCheck::Follow {
 Result<void> CorrectionCheck::take(const Correction& correction) {
   const auto& [revision, id, author, utime, content, what] = correction;
   if (revision <= revision_) return refuse(Code::kStale, "revisions must ascend, from 1");
-  if (id.empty() || !is_printable(id)) return refuse(Code::kBadName, "an id must be 1 to 80 printable characters");
-  if (!is_printable(author)) return refuse(Code::kBadName, "author must be at most 80 printable characters");
+  if (!is_request_id(id)) return refuse(Code::kBadName, "an id must be 1 to 80 printable characters");
+  if (author.size() > kLongestAuthor || !is_printable(author)) {
+    return refuse(Code::kBadName, "author must be at most 80 printable characters");
+  }
   if (utime < 0) return refuse(Code::kBadRequest, "a time before 1970");
   if (ids_.contains(id)) return refuse(Code::kExists, "another correction has the id " + id);
   if (auto fine = std::visit(Follow{*this, id}, what); !fine) return fine;

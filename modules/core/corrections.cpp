@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/text.hpp"
+
 namespace concord {
 namespace {
 
@@ -62,9 +64,8 @@ Operation summary(const Correction& correction, bool active) {
 }
 
 bool is_title(std::string_view text) {
-  const auto is_bad = [](char c) { return (c >= 0 && c < 0x20) || c == 0x7F || c == '/' || c == '\\'; };
   return !text.empty() && text.size() <= 80 && text.front() != ' ' && text.back() != ' ' &&
-         std::none_of(text.begin(), text.end(), is_bad);
+         text.find_first_of("/\\") == text.npos && is_printable(text);
 }
 
 }  // namespace concord

@@ -23,7 +23,7 @@ inline constexpr std::size_t kMaxZones = 1000;
 inline constexpr std::size_t kMaxLeases = 64;
 /// Of a zone or a lease.
 inline constexpr std::size_t kMaxVolumePoints = 64;
-/// For a request that does not heed what others did since.
+/// For a request that does not heed what was done since.
 inline constexpr std::int64_t kAnyRevision = -1;
 
 /// The frame that a person works in: the map's, or an agent's own (a headset's), which must then be aligned.
@@ -41,7 +41,7 @@ struct EditRequest {
   Shape shape;
   WorkFrame frame;
   Eigen::Vector3d move = Eigen::Vector3d::Zero();  ///< metres in `frame`; rounded to whole voxels of the map
-  std::int64_t base_revision = kAnyRevision;       ///< refused if others changed these voxels since
+  std::int64_t base_revision = kAnyRevision;       ///< refused if these voxels were changed since
   std::int64_t utime = 0;
 };
 

@@ -19,7 +19,7 @@ enum class Code {
   kOutOfBounds,
   kEmpty,
   kStale,
-  kStaleRevision,  ///< others changed it since the revision that the asker saw
+  kStaleRevision,  ///< it was changed since the revision that the asker saw
   kLocked,         ///< somebody else holds the region
   kNotAligned,     ///< the agent's place in the map is not known
   kCollision,      ///< what is moved would meet what is there

@@ -65,6 +65,19 @@ TEST_F(CorrectionCheckTest, IdsAndAuthorsAreTextsAndIdsAreUnique) {
   EXPECT_EQ(take(one), "EXISTS");
 }
 
+TEST_F(CorrectionCheckTest, TextsAreUtf8AsOnTheWire) {
+  EXPECT_EQ(take(correction(1, "a\xFF", Correction::Weight{"robot1", 2})), "BAD_NAME");
+  Correction one = correction(1, "T\u00fcr", Correction::Weight{"robot1", 2});
+  one.author = "eva\xC3";
+  EXPECT_EQ(take(one), "BAD_NAME") << "cut short";
+  one.author = "J\u00f6rg";
+  EXPECT_EQ(take(one), "OK");
+  revision_ = 1;
+  EXPECT_EQ(take(zone_of(ZoneRequest::Op::kAdd, "dock \xFF", kBox)), "BAD_NAME");
+  EXPECT_EQ(take(zone_of(ZoneRequest::Op::kAdd, "dock \xC0\xAF", kBox)), "BAD_NAME") << "an overlong slash";
+  EXPECT_EQ(take(zone_of(ZoneRequest::Op::kAdd, "T\u00fcr 7", kBox)), "OK");
+}
+
 TEST_F(CorrectionCheckTest, AnEditPinsSortedVoxelsAsItsOpDoes) {
   using Op = EditRequest::Op;
   const std::vector<VoxelIndex> a{{0, 0, 0}, {0, 0, 1}};
