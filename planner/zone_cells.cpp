@@ -113,6 +113,11 @@ Result<ZoneCells> draw(const Zone& zone, double resolution, const Band& band, st
       });
 }
 
+Result<std::int64_t> count(const Zone& zone, double resolution, const Band& band, std::int64_t most) {
+  const Heights heights = heights_of(band, resolution);
+  return footprint_count(zone.volume, zone.T_map_zone, resolution, heights.low, heights.high, most);
+}
+
 CellRectangle rectangle_around(const Zone& zone, double resolution, const Band& band) {
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& corner : std::visit(Hull{}, zone.volume)) {

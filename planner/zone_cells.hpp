@@ -41,6 +41,9 @@ struct ZoneCells {
 /// (kTooLarge).
 [[nodiscard]] Result<ZoneCells> draw(const Zone& zone, double resolution, const Band& band, std::int64_t most);
 
+/// How many those are, at the cost of their rows. Refused likewise.
+[[nodiscard]] Result<std::int64_t> count(const Zone& zone, double resolution, const Band& band, std::int64_t most);
+
 /// A rectangle along the grid's axes that holds every cell of the map's bounds that the zone touches in the band,
 /// whatever the zone: all there are where its place cannot be told.
 [[nodiscard]] CellRectangle rectangle_around(const Zone& zone, double resolution, const Band& band);

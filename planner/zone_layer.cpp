@@ -12,15 +12,14 @@ void ZoneLayer::Dirty::add(const Drawn& drawn) {
   anywhere |= drawn.is_no_go() && !drawn.is_fine;
 }
 
-ZoneLayer::Drawn ZoneLayer::drawn(const Zone& zone) const {
+/// Not drawn yet: what is drawn is paid for when it is known to be heeded.
+ZoneLayer::Drawn ZoneLayer::counted(Zone zone) const {
   Drawn now;
-  now.zone = zone;
-  if (auto cells = draw(zone, resolution_, band_, kMaxZoneCells)) {
-    now.fits = now.is_fine = true;
-    now.cells = std::move(*cells);
-  } else {
-    now.around = rectangle_around(zone, resolution_, band_);
+  if (const auto cells = count(zone, resolution_, band_, kMaxZoneCells)) {
+    now.fits = true;
+    now.count = *cells;
   }
+  now.zone = std::move(zone);
   return now;
 }
 
@@ -39,8 +38,7 @@ std::vector<ZoneLayer::Drawn> ZoneLayer::match(std::vector<Zone> zones, Dirty& d
       continue;
     }
     if (was_there) dirty.add(*old++);
-    next.push_back(drawn(zone));
-    dirty.add(next.back());
+    next.push_back(counted(std::move(zone)));
   }
   for (; old != zones_.end(); ++old) dirty.add(*old);
   return next;
@@ -48,17 +46,15 @@ std::vector<ZoneLayer::Drawn> ZoneLayer::match(std::vector<Zone> zones, Dirty& d
 
 /// Takes the zone cell by cell if it has no more than `left`, from which they go off.
 void ZoneLayer::settle(Drawn& zone, std::int64_t& left, Dirty& dirty) const {
-  const bool is_fine = zone.fits && zone.cells.count <= left;
-  if (is_fine) left -= zone.cells.count;
-  if (is_fine == zone.is_fine) return;
-  dirty.add(zone);
-  if (is_fine) {
-    zone = drawn(zone.zone);
-  } else {
-    zone.is_fine = false;
-    zone.cells.columns = {};
-    zone.around = rectangle_around(zone.zone, resolution_, band_);
-  }
+  const bool is_fine = zone.fits && zone.count <= left;
+  if (is_fine) left -= zone.count;
+  if (zone.is_settled && is_fine == zone.is_fine) return;
+  if (zone.is_settled) dirty.add(zone);
+  auto cells = is_fine ? draw(zone.zone, resolution_, band_, zone.count) : Result<ZoneCells>();
+  zone.is_settled = true;
+  zone.is_fine = is_fine && cells;
+  zone.cells = zone.is_fine ? std::move(*cells) : ZoneCells();
+  if (!zone.is_fine) zone.around = rectangle_around(zone.zone, resolution_, band_);
   dirty.add(zone);
 }
 

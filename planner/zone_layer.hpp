@@ -31,7 +31,8 @@ class ZoneLayer {
     std::vector<ColumnChange> columns;
     bool anywhere = false;  ///< beyond `columns`, a zone that is taken as a rectangle came, went or changed
   };
-  /// The zones from now on. Draws those that are new or changed; the rest costs nothing. What it leads to depends on
+  /// The zones from now on. Counts those that are new or changed, and draws those of them that are taken
+  /// cell by cell: kMaxCells at most in all; the rest costs nothing. What it leads to depends on
   /// `zones` alone, not on what was before.
   Change set(std::span<const Zone> zones);
 
@@ -57,9 +58,11 @@ class ZoneLayer {
  private:
   struct Drawn {
     Zone zone;
-    bool fits = false;     ///< `cells` can be had
-    bool is_fine = false;  ///< and are heeded
-    ZoneCells cells;       ///< columns only if is_fine
+    bool fits = false;        ///< it has `count` cells, at most kMaxZoneCells
+    bool is_settled = false;  ///< what is below is right
+    bool is_fine = false;     ///< taken cell by cell
+    std::int64_t count = 0;
+    ZoneCells cells;       ///< none unless is_fine
     CellRectangle around;  ///< of a no-go zone that is not
 
     [[nodiscard]] bool is_no_go() const { return zone.kind == Zone::Kind::kNoGo; }
@@ -74,7 +77,7 @@ class ZoneLayer {
     void add(const Drawn& drawn);
   };
 
-  [[nodiscard]] Drawn drawn(const Zone& zone) const;
+  [[nodiscard]] Drawn counted(Zone zone) const;
   [[nodiscard]] std::vector<Drawn> match(std::vector<Zone> zones, Dirty& dirty);
   void settle(Drawn& zone, std::int64_t& left, Dirty& dirty) const;
   [[nodiscard]] std::vector<ColumnChange> recompute(std::vector<BrickIndex> dirty);

@@ -77,4 +77,19 @@ bool visit_columns(const ConvexCells& cells, std::int64_t& work, Visit&& visit) 
   return true;
 }
 
+/// Calls visit(x, first y, last y) for every row of the layer z = 0 with cells, likewise. @pre cut_to_ground() and
+/// in_bounds().
+template <class Visit>
+bool visit_ground_rows(const ConvexCells& cells, std::int64_t& work, Visit&& visit) {
+  const CellRange planes = cells.x_range();
+  for (double x = planes.first; x <= planes.last; ++x) {
+    if (--work < 0) return false;
+    const CellRange row = cells.y_range(x);
+    if (row.first > row.last) continue;
+    if (!visit(static_cast<std::int32_t>(x), static_cast<std::int32_t>(row.first), static_cast<std::int32_t>(row.last)))
+      return false;
+  }
+  return true;
+}
+
 }  // namespace concord

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "core/convex_cells.hpp"
 #include "core/shape_pieces.hpp"
@@ -101,13 +102,11 @@ Result<std::vector<VoxelIndex>> gather_touched(const std::vector<ConvexPiece>& p
 }
 
 /// The cells of a volume's pieces.
-Result<std::vector<VoxelIndex>> gather(const std::vector<ConvexPiece>& pieces, double slack, bool ground_only,
-                                       std::int64_t most) {
+Result<std::vector<VoxelIndex>> gather(const std::vector<ConvexPiece>& pieces, std::int64_t most) {
   VoxelRuns runs(most);
   std::int64_t work = work_for(most);
   for (const ConvexPiece& piece : pieces) {
-    ConvexCells cells(piece, slack);
-    if (ground_only) cells.cut_to_ground();
+    const ConvexCells cells(piece, -kOnFace);
     if (!cells.in_bounds()) return refuse_out_of_bounds();
     const auto add = [&](std::int32_t x, std::int32_t y, std::int32_t first, std::int32_t last) {
       return runs.add(x, y, first, last);
@@ -115,6 +114,20 @@ Result<std::vector<VoxelIndex>> gather(const std::vector<ConvexPiece>& pieces, d
     if (!visit_columns(cells, work, add) || !runs.end_part()) return refuse_too_many(most);
   }
   return runs.take();
+}
+
+/// Those that a volume's pieces touch in the layer z = 0, as runs along y: of (x, 0, first y) to (x, 0, last y).
+Result<VoxelRuns> gather_ground(const std::vector<ConvexPiece>& pieces, std::int64_t most) {
+  VoxelRuns runs(most);
+  std::int64_t work = work_for(most);
+  for (const ConvexPiece& piece : pieces) {
+    ConvexCells cells(piece, kOnFace);
+    cells.cut_to_ground();
+    if (!cells.in_bounds()) return refuse_out_of_bounds();
+    const auto add = [&](std::int32_t x, std::int32_t first, std::int32_t last) { return runs.add(x, 0, first, last); };
+    if (!visit_ground_rows(cells, work, add) || !runs.end_part()) return refuse_too_many(most);
+  }
+  return runs;
 }
 
 struct Select {
@@ -141,7 +154,7 @@ struct Select {
   template <class SomeVolume>
   Result<std::vector<VoxelIndex>> operator()(const SomeVolume& volume) const {
     return pieces_of(Volume(volume), T_map_frame, cells).and_then([&](const std::vector<ConvexPiece>& pieces) {
-      return gather(pieces, -kOnFace, false, most);
+      return gather(pieces, most);
     });
   }
 };
@@ -183,8 +196,10 @@ bool contains(const Volume& volume, const Transform& T_map_frame, const Eigen::V
   return (q >= -kOnBoundary).all() && (q <= box.size.array() + kOnBoundary).all();
 }
 
-Result<std::vector<VoxelIndex>> footprint(const Volume& volume, const Transform& T_map_frame, double resolution,
-                                          double zmin, double zmax, std::int64_t most) {
+namespace {
+
+Result<VoxelRuns> ground_runs(const Volume& volume, const Transform& T_map_frame, double resolution, double zmin,
+                              double zmax, std::int64_t most) {
   if (auto fine = check_placing(T_map_frame, resolution); !fine) return tl::unexpected(fine.error());
   if (!(std::abs(zmin) <= kFarthest) || !(std::abs(zmax) <= kFarthest) || zmax - zmin < kThinnestBand * resolution) {
     return refuse(Code::kBadRequest, "the lower height must be below the upper, both within the map");
@@ -193,7 +208,26 @@ Result<std::vector<VoxelIndex>> footprint(const Volume& volume, const Transform&
   const CellFrame cells{{0, 0, zmin}, {resolution, resolution, zmax - zmin}};
   return check(volume)
       .and_then([&] { return pieces_of(volume, T_map_frame, cells); })
-      .and_then([&](const std::vector<ConvexPiece>& pieces) { return gather(pieces, kOnFace, true, most); });
+      .and_then([&](const std::vector<ConvexPiece>& pieces) { return gather_ground(pieces, most); });
+}
+
+}  // namespace
+
+Result<std::vector<VoxelIndex>> footprint(const Volume& volume, const Transform& T_map_frame, double resolution,
+                                          double zmin, double zmax, std::int64_t most) {
+  return ground_runs(volume, T_map_frame, resolution, zmin, zmax, most)
+      .and_then([](VoxelRuns runs) { return runs.take(); })
+      .map([](std::vector<VoxelIndex> cells) {
+        for (VoxelIndex& cell : cells) std::swap(cell.y, cell.z);
+        return cells;
+      });
+}
+
+Result<std::int64_t> footprint_count(const Volume& volume, const Transform& T_map_frame, double resolution, double zmin,
+                                     double zmax, std::int64_t most) {
+  return ground_runs(volume, T_map_frame, resolution, zmin, zmax, most).and_then([](VoxelRuns runs) {
+    return runs.count();
+  });
 }
 
 }  // namespace concord

@@ -88,5 +88,8 @@ using Volume = std::variant<Box, OrientedBox, Prism>;
 /// hundredth of a voxel (kBadRequest).
 [[nodiscard]] Result<std::vector<VoxelIndex>> footprint(const Volume& volume, const Transform& T_map_frame,
                                                         double resolution, double zmin, double zmax, std::int64_t most);
+/// How many those are, at the cost of their rows. Refused likewise.
+[[nodiscard]] Result<std::int64_t> footprint_count(const Volume& volume, const Transform& T_map_frame,
+                                                   double resolution, double zmin, double zmax, std::int64_t most);
 
 }  // namespace concord

@@ -40,11 +40,17 @@ std::int64_t VoxelRuns::join() {
   return total;
 }
 
-Result<std::vector<VoxelIndex>> VoxelRuns::take() {
+Result<std::int64_t> VoxelRuns::count() {
   const std::int64_t total = join();
   if (total > most_) return refuse_too_many(most_);
+  return total;
+}
+
+Result<std::vector<VoxelIndex>> VoxelRuns::take() {
+  const auto total = count();
+  if (!total) return tl::unexpected(total.error());
   std::vector<VoxelIndex> voxels;
-  voxels.reserve(static_cast<std::size_t>(total));
+  voxels.reserve(static_cast<std::size_t>(*total));
   for (const Run& run : runs_) {
     for (std::int32_t z = run.first; z <= run.last; ++z) voxels.push_back({run.x, run.y, z});
   }

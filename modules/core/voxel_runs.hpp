@@ -19,6 +19,8 @@ class VoxelRuns {
   [[nodiscard]] bool add(std::int32_t x, std::int32_t y, std::int32_t first, std::int32_t last);
   /// Ends a part. False when the parts together are too many for sure: then stop.
   [[nodiscard]] bool end_part();
+  /// How many different voxels there are, without taking memory for them. Refused: over `most` (kTooLarge).
+  [[nodiscard]] Result<std::int64_t> count();
   /// All voxels, sorted and unique. Refused: over `most` (kTooLarge), before memory is taken for them.
   [[nodiscard]] Result<std::vector<VoxelIndex>> take();
 

@@ -1,6 +1,7 @@
 #include "planner/zone_layer.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <map>
 #include <set>
 
@@ -194,6 +195,35 @@ TEST(ZoneLayer, AllZonesTogetherAreBounded) {
   EXPECT_TRUE(one_by_one.coarse().empty());
   EXPECT_NE(one_by_one.no_go_at({19'500, 30}), nullptr);
   EXPECT_EQ(one_by_one.no_go_at({30, 30}), nullptr);
+}
+
+/// A thousand is what a list may hold: drawing each to find out that there is no room takes half a minute.
+TEST(ZoneLayer, ZonesForWhichThereIsNoRoomAreNotDrawn) {
+  std::vector<Zone> zones;
+  for (int i = 0; i < 1000; ++i) {
+    zones.push_back(test::no_go("zone" + std::to_string(1000 + i), {0.05 * i, 0}, {0.05 * i + 95, 95}));
+  }
+  ZoneLayer layer(0.1, kBand);
+  const auto begin = std::chrono::steady_clock::now();
+  layer.set(zones);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
+  EXPECT_GE(layer.coarse().size(), 980U);
+  EXPECT_EQ(layer.coarse().back(), "zone1999");
+}
+
+/// Counting is drawing without the cells.
+TEST(ZoneLayer, CountsWhatItDraws) {
+  std::mt19937 random(5);
+  for (int i = 0; i < 300; ++i) {
+    const Zone zone = test::random_zone(random, "a", 8, 8, 3);
+    const auto counted = count(zone, 0.1, kBand, 100'000);
+    const auto drawn = draw(zone, 0.1, kBand, 100'000);
+    ASSERT_TRUE(counted && drawn);
+    EXPECT_EQ(*counted, drawn->count);
+    if (*counted == 0) continue;
+    EXPECT_FALSE(count(zone, 0.1, kBand, *counted - 1));
+    EXPECT_TRUE(count(zone, 0.1, kBand, *counted));
+  }
 }
 
 TEST(ZoneLayer, NamesTheNearestNoGoZone) {
