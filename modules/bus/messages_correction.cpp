@@ -15,6 +15,9 @@ namespace {
 
 using wire::bad;
 
+/// Of a stamp: far from where sums of times would overflow.
+constexpr std::int64_t kLatestTime = std::int64_t{1} << 62;
+
 constexpr WireField kAsker[] = {fixed(8), text(wire::kIdLength), text(wire::kIdLength)};  ///< utime, id, author
 constexpr WireField kFrame[] = {text(wire::kNameLength), text(wire::kNameLength)};        ///< frame_agent, frame_id
 
@@ -56,6 +59,9 @@ Decoded<Lcm> read(std::span<const std::uint8_t> bytes, std::span<const WireField
   if (!in) return bad(in.error());
   if (!wire::is_request_id(id_of(*in))) return wire::bad_id();
   if (!wire::is_printable(in->author)) return wire::bad_author(id_of(*in));
+  if (in->utime < 0 || in->utime > kLatestTime) {
+    return bad(Code::kBadRequest, "utime is no time; it must be microseconds since 1970", id_of(*in));
+  }
   return std::move(*in);
 }
 

@@ -15,6 +15,9 @@ using wire::bad;
 using wire::bad_agent;
 using wire::bad_id;
 
+/// Of a stamp: far from where sums of times would overflow.
+constexpr std::int64_t kLatestTime = std::int64_t{1} << 62;
+
 }  // namespace
 
 Bytes encode(const AgentPose& value) {
@@ -31,6 +34,9 @@ Decoded<AgentPose> decode<AgentPose>(std::span<const std::uint8_t> bytes) {
   const auto in = wire::from_bytes<agent_pose_t>(bytes, kLayout);
   if (!in) return bad(in.error());
   if (!is_name(in->frame_id)) return bad(Code::kBadFrame, "frame_id must be 1 to 40 of A-Z a-z 0-9 . _ -");
+  if (in->utime < 0 || in->utime > kLatestTime) {
+    return bad(Code::kBadRequest, "utime is no time; it must be microseconds since 1970");
+  }
   const auto T = wire::from_wire(in->T_agent_base);
   if (!T) return bad(T.error());
   return AgentPose{{}, in->frame_id, *T, in->utime};

@@ -11,6 +11,8 @@ constexpr std::int64_t kAgentsPeriod = 1'000'000;
 /// nothing more arrives.
 constexpr std::int64_t kLongestWait = 10'000'000;
 constexpr std::int64_t kPoseSilence = 3'000'000;
+/// Ingest says each second of every agent that it is there; some of that may be lost.
+constexpr std::int64_t kAllHeard = 3'000'000;
 const std::string kStreamPrefix = "out/agent/";
 
 /// "out/agent/ID/bricks" and "in/ID/pose" name their agent between prefix and last slash.
@@ -23,7 +25,8 @@ std::string agent_named(const std::string& channel, std::size_t prefix) {
 AgentsNode::AgentsNode(const NodeContext& context, const People& people, MapStreams& map)
     : context_(context), people_(people), map_(map), last_arrival_(context.bus.now()) {
   for (const auto& [id, placements] : people_.placements()) {
-    if (std::ranges::any_of(placements, [](const auto& entry) { return entry.second.has_layer; })) awaited_.insert(id);
+    if (std::ranges::any_of(placements, [](const auto& entry) { return entry.second.placement.has_layer; }))
+      awaited_.insert(id);
   }
   listen();
   context_.bus.every(kAgentsPeriod, [this] { publish_agents(); });
@@ -41,6 +44,10 @@ void AgentsNode::listen() {
                                  if (digest.frame_id.empty() && !agents_.contains(id) && !awaited_.contains(id)) return;
                                  if (BrickReceiver* stream = stream_of_channel(channel)) stream->on_digest(digest);
                                });
+  concord::listen<ProcessStatus>(context_.bus, context_.counters, context_.process, "out/status/ingest",
+                                 [this](const std::string&, const ProcessStatus&) {
+                                   if (!ingest_heard_) ingest_heard_ = context_.bus.now();
+                                 });
   concord::listen<AgentPose>(context_.bus, context_.counters, context_.process, "in/[^/]+/pose",
                              [this](const std::string& channel, AgentPose pose) { on_pose(channel, std::move(pose)); });
 }
@@ -107,6 +114,7 @@ void AgentsNode::leave(const std::string& id) {
   map_.layers().remove_layer(id);
   awaited_.erase(id);
   Agent& agent = agents_[id];
+  agent.incarnation = 0;
   agent.frame_id.clear();
   agent.pose.reset();
   agent.poses.clear();
@@ -117,7 +125,7 @@ void AgentsNode::on_pose(const std::string& channel, AgentPose pose) {
   Agent* agent = agent_called(pose.agent, channel);
   if (agent == nullptr) return;
   const bool is_new_frame = pose.frame_id != agent->frame_id;
-  if (agent->frame_id.empty() || (!agent->stream && is_new_frame)) enter_frame(pose.agent, *agent, pose.frame_id);
+  if (agent->frame_id.empty() || (!agent->has_layer() && is_new_frame)) enter_frame(pose.agent, *agent, pose.frame_id);
   if (pose.frame_id != agent->frame_id) {
     return context_.counters.refused(channel, {Code::kBadFrame, "pose is in a frame other than the submap's"});
   }
@@ -126,18 +134,22 @@ void AgentsNode::on_pose(const std::string& channel, AgentPose pose) {
   if (agent->pose && agent->pose->frame_id == pose.frame_id && pose.utime <= agent->pose->utime && !silent) {
     return context_.counters.refused(channel, {Code::kStale, "pose is not newer than the last"});
   }
+  if (const auto added = agent->poses.add(pose.utime, pose.T_agent_base); !added) {
+    return context_.counters.refused(channel, added.error());
+  }
   agent->pose_heard = time;
-  agent->poses.add(pose.utime, pose.T_agent_base);
   agent->pose = std::move(pose);
   publish_pose(agent->pose->agent, *agent);
 }
 
 Result<const AgentsNode::Agent*> AgentsNode::agent_in(const std::string& id, const std::string& frame_id) const {
   const auto it = agents_.find(id);
+  // An agent that is awaited may be heard by its poses before its layer: what was asked of it then would hold for none.
+  const bool has_layer = it != agents_.end() && it->second.has_layer();
+  if (!has_layer && awaited_.contains(id) && !map_.begun()) {
+    return refuse(Code::kBusy, "the layer of " + id + " has not been heard since merge began; ask again in a second");
+  }
   if (it == agents_.end() || it->second.frame_id.empty()) {
-    if (awaited_.contains(id) && !map_.begun()) {
-      return refuse(Code::kBusy, "agent " + id + " has not been heard since merge began; ask again in a second");
-    }
     return refuse(Code::kNoAgent, "no agent " + id + " has been heard; see: concord agents");
   }
   if (!frame_id.empty() && frame_id != it->second.frame_id) {
@@ -204,6 +216,34 @@ bool AgentsNode::has_all_that_was_aligned() const {
     return it != agents_.end() && it->second.stream && it->second.stream->synced();
   });
   return all || context_.bus.now() - last_arrival_ >= kLongestWait;
+}
+
+Result<void> AgentsNode::all_whole() const {
+  if (!ingest_heard_ || context_.bus.now() - *ingest_heard_ < kAllHeard) {
+    return refuse(Code::kBusy,
+                  "ingest has not been heard for 3 s since merge began, so some layers may be missing; "
+                  "does it run? ask again in some seconds");
+  }
+  for (const auto& [id, agent] : agents_) {
+    if (!agent.has_layer()) continue;
+    const bool is_settled = !people_.carried_over(id, agent.frame_id, agent.incarnation, context_.bus.now());
+    if (!agent.stream->synced() || !is_settled) {
+      return refuse(Code::kBusy, "the layer of " + id + " is not whole here; ask again in a second");
+    }
+  }
+  return {};
+}
+
+std::vector<Correction> AgentsNode::carried_over() const {
+  std::vector<Correction> out;
+  for (const auto& [id, agent] : agents_) {
+    if (!agent.has_layer()) continue;
+    auto carried = people_.carried_over(id, agent.frame_id, agent.incarnation, context_.bus.now());
+    if (!carried) continue;
+    carried->revision += static_cast<std::int64_t>(out.size());
+    out.push_back(std::move(*carried));
+  }
+  return out;
 }
 
 std::optional<AgentState> AgentsNode::state_of(const std::string& id) const {

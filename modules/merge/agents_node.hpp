@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "bus/brick_stream.hpp"
 #include "bus/process.hpp"
@@ -38,6 +39,13 @@ class AgentsNode {
   /// long that they need not be waited for.
   [[nodiscard]] bool has_all_that_was_aligned() const;
 
+  /// Whether the layers are all there is, as a saved map must hold them. Refused (kBusy): ingest has not been heard for
+  /// so long that all its agents were, or the layer of one of them is not whole or not settled.
+  [[nodiscard]] Result<void> all_whole() const;
+
+  /// Placements that must be committed, see People::carried_over; they follow on what was made.
+  [[nodiscard]] std::vector<Correction> carried_over() const;
+
   /// What out/agents says of an agent; none: it is not there.
   [[nodiscard]] std::optional<AgentState> state_of(const std::string& id) const;
   /// Of its stream; 0 for an agent that only sends poses. @pre it is there.
@@ -47,10 +55,12 @@ class AgentsNode {
   struct Agent {
     std::unique_ptr<BrickReceiver> stream;  ///< null for an agent that only sends poses
     std::string frame_id;                   ///< empty: not there
-    std::int64_t incarnation = 0;           ///< of the stream
+    std::int64_t incarnation = 0;           ///< of the stream; 0 while it has not spoken, and when it has ended
     std::optional<AgentPose> pose;
     std::int64_t pose_heard = 0;
     PoseRing poses;
+
+    [[nodiscard]] bool has_layer() const { return stream && !stream->frame_id().empty(); }
   };
 
   void listen();
@@ -73,8 +83,9 @@ class AgentsNode {
   const People& people_;
   MapStreams& map_;
   std::map<std::string, Agent> agents_;
-  std::set<std::string> awaited_;  ///< had a layer in the map before this start
-  std::int64_t last_arrival_;      ///< of a brick, while the map is held back
+  std::set<std::string> awaited_;             ///< had a layer in the map before this start
+  std::int64_t last_arrival_;                 ///< of a brick, while the map is held back
+  std::optional<std::int64_t> ingest_heard_;  ///< first
 };
 
 }  // namespace concord

@@ -27,6 +27,7 @@ class Following {
 
   Result<void> take_saved() {
     for (const Correction& saved : loading_.archive.corrections) {
+      if (is_of_no_layer(std::get_if<Correction::Weight>(&saved.what))) continue;
       Correction correction = saved;
       const LayerHead* head = rekey(correction);
       if (head != nullptr) placed_.insert_or_assign(head->agent, correction);
@@ -71,13 +72,24 @@ class Following {
     out.push_back(std::move(correction));
   }
 
-  /// The layer that a placement is of, after making it one of what the layer has become; null: of none.
+  /// A weight holds for an id: that of an agent which is not in the file would be given to who has the id here.
+  [[nodiscard]] bool is_of_no_layer(const Correction::Weight* weight) const {
+    return weight != nullptr && std::ranges::none_of(loading_.archive.layers, [&](const SavedLayer& layer) {
+             return layer.head.agent == weight->agent;
+           });
+  }
+
+  /// The layer that a placement is of, after making it one of what the layer has become; null: of none, after making it
+  /// nobody's.
   const LayerHead* rekey(Correction& correction) const {
     auto* placement = std::get_if<Correction::Placement>(&correction.what);
     if (placement == nullptr) return nullptr;
     const auto it = std::ranges::find_if(loading_.archive.layers,
                                          [&](const SavedLayer& layer) { return is_of(*placement, layer.head); });
-    if (it == loading_.archive.layers.end()) return nullptr;
+    if (it == loading_.archive.layers.end()) {
+      placement->incarnation = kNobodys;
+      return nullptr;
+    }
     placement->incarnation = loading_.incarnation;
     placement->has_layer = true;
     return &it->head;

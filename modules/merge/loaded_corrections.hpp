@@ -20,9 +20,10 @@ struct Loading {
 };
 
 /// What people corrected in a saved map, as it follows on what people corrected here: those whose ids are new, in their
-/// order, with revisions that go on from ours. Placements of the file's layers hold for what these have become; a layer
-/// whose placement is known here, for the agent that it was before, is placed anew, and one that would not weigh here
-/// what it weighed there is given that weight. Asked again after it was done, nothing is left to do.
+/// order, with revisions that go on from ours. Nobody who is here moves or weighs differently for it: placements of the
+/// file's layers hold for what these have become, all others for nobody, and weights of other agents are left out. A
+/// layer whose placement is known here, for the agent that it was before, is placed anew, and one that would not weigh
+/// here what it weighed there is given that weight. Asked again after it was done, nothing is left to do.
 ///
 /// `weight_here`: of an agent that nobody gave a weight. `ours` has taken all corrections that were made here. Refused:
 /// another correction with one of the ids, or a zone whose name is taken (kExists), and what else CorrectionCheck

@@ -24,7 +24,10 @@ MergeNode::MergeNode(const NodeContext& context)
   BrickSet pinned;
   for (const BrickIndex index : people_.pins().sorted_bricks()) pinned.insert(index);
   map_.layers().mark(pinned);
-  context_.bus.every(kRefoldPeriod, [this] { refold_and_send(); });
+  context_.bus.every(kRefoldPeriod, [this] {
+    settle();
+    refold_and_send();
+  });
   context_.bus.every(kCountPeriod, [this] { count(); });
   refold_and_send();
 }
@@ -36,6 +39,14 @@ People MergeNode::restored() {
   if (!done) throw std::runtime_error(done.error().message);
   spdlog::info("restored what people made up to revision {}", people.revision());
   return people;
+}
+
+/// Who was placed by its poses now has a layer there: on disk, so that it ends with the layer.
+void MergeNode::settle() {
+  const auto carried = agents_.carried_over();
+  if (carried.empty()) return;
+  // What cannot be stored now is tried again: until then it lies there all the same.
+  if (const auto done = people_node_.commit(carried); !done) context_.counters.refused("carried_over", done.error());
 }
 
 void MergeNode::refold_and_send() {

@@ -23,6 +23,7 @@ class MergeNode {
 
  private:
   [[nodiscard]] People restored();
+  void settle();
   void refold_and_send();
   void count();
 

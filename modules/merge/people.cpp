@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "core/map_archive.hpp"
 #include "merge/edit_evaluation.hpp"
 #include "merge/region.hpp"
 
@@ -31,7 +32,8 @@ Result<Correction::Edit> People::check(const EditRequest& request, const Transfo
   if (!edit) return edit;
   const PinnedBricks bricks = by_brick(*edit);
   if (request.base_revision >= 0 && edits_.changed_since(bricks, request.base_revision)) {
-    return refuse(Code::kStaleRevision, "others changed these voxels since; look at them, then ask again");
+    return refuse(Code::kStaleRevision, "these voxels were changed since revision " +
+                                            std::to_string(request.base_revision) + "; look at them, then ask again");
   }
   const auto free = leases_.check(bricks, request.author, now);
   if (!free) return tl::unexpected(free.error());
@@ -108,7 +110,12 @@ struct People::Apply {
     zone.revision = correction.revision;
   }
   void operator()(const Correction::Placement& placement) const {
-    people.placements_[placement.agent][{placement.frame_id, placement.incarnation}] = placement;
+    if (placement.incarnation == kNobodys) return;
+    Placements& placements = people.placements_[placement.agent];
+    if (placement.incarnation != 0) {
+      std::erase_if(placements, [](const auto& entry) { return entry.first.second == 0; });
+    }
+    placements[{placement.frame_id, placement.incarnation}] = {placement, correction.revision};
   }
   void operator()(const Correction::Weight& weight) const { people.weights_[weight.agent] = weight.weight; }
 };
@@ -143,10 +150,47 @@ bool People::is_active(const Operation& operation) const {
 
 const Transform* People::T_map_agent(const std::string& agent, const std::string& frame_id,
                                      std::int64_t incarnation) const {
+  const Placed* found = placed_by_poses(agent, frame_id, incarnation);
+  if (found == nullptr) found = placed(agent, frame_id, incarnation);
+  return found != nullptr ? &found->placement.T_map_agent : nullptr;
+}
+
+const People::Placed* People::placed(const std::string& agent, const std::string& frame_id,
+                                     std::int64_t incarnation) const {
   const auto it = placements_.find(agent);
   if (it == placements_.end()) return nullptr;
-  const auto placement = it->second.find({frame_id, incarnation});
-  return placement != it->second.end() ? &placement->second.T_map_agent : nullptr;
+  const auto found = it->second.find({frame_id, incarnation});
+  return found != it->second.end() ? &found->second : nullptr;
+}
+
+/// What an agent's layer takes over from before it had one. It is later than any placement of a layer, see apply.
+const People::Placed* People::placed_by_poses(const std::string& agent, const std::string& frame_id,
+                                              std::int64_t incarnation) const {
+  const bool is_of_a_robot = incarnation > 0 && incarnation < kLoadedIncarnation;
+  return is_of_a_robot ? placed(agent, frame_id, 0) : nullptr;
+}
+
+std::optional<Correction> People::carried_over(const std::string& agent, const std::string& frame_id,
+                                               std::int64_t incarnation, std::int64_t now) const {
+  const Placed* before = placed_by_poses(agent, frame_id, incarnation);
+  if (before == nullptr) return std::nullopt;
+  const auto made =
+      std::ranges::lower_bound(made_, before->revision, {}, [](const Made& one) { return one.operation.revision; });
+  assert(made != made_.end() && made->operation.revision == before->revision);
+  Correction out{revision() + 1,   id_of_carried(before->revision), made->operation.author, now, made->content,
+                 before->placement};
+  auto& placement = std::get<Correction::Placement>(out.what);
+  placement.incarnation = incarnation;
+  placement.has_layer = true;
+  return out;
+}
+
+/// One that no person has used.
+std::string People::id_of_carried(std::int64_t revision) const {
+  const std::string first = "carried-" + std::to_string(revision);
+  std::string id = first;
+  for (int i = 1; find(id) != nullptr; ++i) id = first + "." + std::to_string(i);
+  return id;
 }
 
 std::optional<int> People::weight(const std::string& agent) const {

@@ -16,6 +16,10 @@
 
 namespace concord {
 
+/// Of placements that hold for no agent here, and are kept as history: those that a saved map has of other agents than
+/// its layers.
+inline constexpr std::int64_t kNobodys = -1;
+
 /// All that people made: the fold of their corrections in the order of revisions. `check` says what a request leads to
 /// or why it is refused, and changes nothing; `apply` takes a correction that was checked, and cannot fail. So what is
 /// stored between the two can be had back by applying it all again, and gives the same.
@@ -27,7 +31,7 @@ class People {
   [[nodiscard]] std::int64_t revision() const { return made_.empty() ? 0 : made_.back().operation.revision; }
 
   /// `T_map_frame` places the request's frame in the map. Refused: what `evaluate` refuses (a move looks at `map`); a
-  /// base revision that is to come (kBadRequest); others changed one of its voxels since (kStaleRevision); a voxel in
+  /// base revision that is to come (kBadRequest); one of its voxels was changed since (kStaleRevision); a voxel in
   /// another author's lease (kLocked).
   [[nodiscard]] Result<Correction::Edit> check(const EditRequest& request, const Transform& T_map_frame,
                                                const BrickMap& map, std::int64_t now) const;
@@ -59,13 +63,24 @@ class People {
   [[nodiscard]] const Leases& leases() const { return leases_; }
   [[nodiscard]] Leases& leases() { return leases_; }
 
-  /// By frame and incarnation: as it was placed last.
-  using Placements = std::map<std::pair<std::string, std::int64_t>, Correction::Placement>;
+  struct Placed {
+    Correction::Placement placement;
+    std::int64_t revision = 0;
+  };
+  /// By frame and incarnation: as it was placed last. Those of kNobodys are history only. Of an agent that had sent
+  /// poses only (incarnation 0) they are over once it is placed with a layer.
+  using Placements = std::map<std::pair<std::string, std::int64_t>, Placed>;
   /// By agent.
   [[nodiscard]] const std::map<std::string, Placements>& placements() const { return placements_; }
-  /// Null: nobody placed it.
+  /// Null: nobody placed it. Where an agent was placed by its poses its layer lies too, if it is in the same frame; but
+  /// not a layer of a file, which tells where it lies itself.
   [[nodiscard]] const Transform* T_map_agent(const std::string& agent, const std::string& frame_id,
                                              std::int64_t incarnation) const;
+  /// What makes it last that the layer of this incarnation lies where the agent's poses were placed: the same placement
+  /// once more, now the layer's, by who made it. So it is over with this incarnation, when the agent is removed. None:
+  /// the layer does not lie there because of that.
+  [[nodiscard]] std::optional<Correction> carried_over(const std::string& agent, const std::string& frame_id,
+                                                       std::int64_t incarnation, std::int64_t now) const;
   /// None: the site file's holds.
   [[nodiscard]] std::optional<int> weight(const std::string& agent) const;
 
@@ -74,6 +89,11 @@ class People {
   [[nodiscard]] Result<void> check_base(std::int64_t base_revision) const;
   [[nodiscard]] Result<void> check_target(const ZoneRequest& request, const Zone* zone, std::int64_t now) const;
   [[nodiscard]] bool is_active(const Operation& operation) const;
+  [[nodiscard]] const Placed* placed(const std::string& agent, const std::string& frame_id,
+                                     std::int64_t incarnation) const;
+  [[nodiscard]] const Placed* placed_by_poses(const std::string& agent, const std::string& frame_id,
+                                              std::int64_t incarnation) const;
+  [[nodiscard]] std::string id_of_carried(std::int64_t revision) const;
 
   double resolution_;
   std::deque<Made> made_;  ///< in the order of their revisions

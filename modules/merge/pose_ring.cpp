@@ -4,12 +4,16 @@
 
 namespace concord {
 
-void PoseRing::add(std::int64_t utime, const Transform& T_agent_base) {
+Result<void> PoseRing::add(std::int64_t utime, const Transform& T_agent_base) {
+  if (utime < 0 || utime > kLatest) {
+    return refuse(Code::kBadRequest, "utime is no time; it must be microseconds since 1970");
+  }
   if (!poses_.empty() && utime <= poses_.back().utime) poses_.clear();
   // The newest is always kept: it replaces one that came just before.
   if (poses_.size() >= 2 && utime - poses_[poses_.size() - 2].utime < kLeastStep) poses_.pop_back();
   poses_.push_back({utime, T_agent_base});
   while (poses_.front().utime < utime - kSpan) poses_.pop_front();
+  return {};
 }
 
 Result<Transform> PoseRing::at(std::int64_t utime) const {

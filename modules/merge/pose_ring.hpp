@@ -16,13 +16,16 @@ class PoseRing {
   static constexpr std::int64_t kLeastStep = 10'000;
   /// A stamp may lie so far outside of them.
   static constexpr std::int64_t kTolerance = 200'000;
+  /// Far from where sums of times would overflow.
+  static constexpr std::int64_t kLatest = std::int64_t{1} << 62;
 
-  /// A stamp that is not newer than the last begins anew: the robot's clock went back.
-  void add(std::int64_t utime, const Transform& T_agent_base);
+  /// A stamp that is not newer than the last begins anew: the robot's clock went back. Refused (kBadRequest), and
+  /// nothing has changed: a time before 1970 or after kLatest.
+  [[nodiscard]] Result<void> add(std::int64_t utime, const Transform& T_agent_base);
   void clear() { poses_.clear(); }
 
   /// Between two poses: the translation linear, the rotation along the shortest way. Refused: further than kTolerance
-  /// from all of them (kStale).
+  /// from all of them (kStale), whatever the time.
   [[nodiscard]] Result<Transform> at(std::int64_t utime) const;
 
  private:

@@ -36,6 +36,9 @@ class MergeStation : public ::testing::Test {
     bus_ = std::make_unique<LockstepBus>(time);
     heard_.clear();
     answers_.clear();
+    bus_->every(1'000'000, [this] {
+      if (ingest_is_up_) bus_->publish("out/status/ingest", encode(ProcessStatus{bus_->now(), "ingest", 1, {}}));
+    });
     node_ = std::make_unique<MergeNode>(NodeContext{*bus_, counters_, site_, "merge", time});
     listen_as_planner();
     bus_->subscribe("out/answer",
@@ -74,7 +77,7 @@ class MergeStation : public ::testing::Test {
     mask[0] = 0xFF;
     agent_map_.set({2, 0, 0}, Brick::uniform(mask, kOccupied));
     agent_stream_->begin("frame1");
-    run();
+    run(4'000'000);  // ingest's status, and the time after it in which merge hears of all agents
   }
 
   Answer ask(const std::string& channel, const Bytes& bytes) {
@@ -83,6 +86,11 @@ class MergeStation : public ::testing::Test {
     bus_->deliver();
     return answers_.empty() ? Answer{} : answers_.back();
   }
+  void say_pose(std::int64_t utime, const std::string& frame_id = "frame1") {
+    bus_->publish("in/robot1/pose", encode(AgentPose{"", frame_id, Transform::Identity(), utime}));
+    bus_->deliver();
+  }
+  void say_pose() { say_pose(bus_->now()); }
   Answer place(const std::string& id, const Transform& T) {
     return ask("in/transform", encode(TransformRequest{id, "eva", "robot1", "", T}, bus_->now()));
   }
@@ -106,6 +114,7 @@ class MergeStation : public ::testing::Test {
   std::unique_ptr<MergeNode> node_;
   BrickMap agent_map_;
   std::int64_t incarnation_ = 1;
+  bool ingest_is_up_ = true;
   std::unique_ptr<BrickSender> agent_stream_;
   std::unique_ptr<BrickReceiver> listener_;
   BrickMap heard_;

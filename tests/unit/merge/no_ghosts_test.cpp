@@ -128,7 +128,7 @@ class World {
   /// A reset, a SLAM system that began anew, or one that comes back to a frame that was aligned before.
   void new_frame(const std::string& agent) {
     Naive::Agent& plain = naive_.agents[agent];
-    plain = {"frame" + std::to_string(random_() % 2), static_cast<std::int64_t>(random_() % 2), {}};
+    plain = {"frame" + std::to_string(random_() % 2), 1 + static_cast<std::int64_t>(random_() % 2), {}};
     map_.begin_layer(agent, plain.frame_id, people_.weight(agent).value_or(1));
     const Transform* T = people_.T_map_agent(agent, plain.frame_id, plain.incarnation);
     if (T != nullptr) map_.place(agent, *T);

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/map_archive.hpp"
 #include "merge/edit_evaluation.hpp"
 
 namespace concord {
@@ -296,6 +297,39 @@ TEST_F(PeopleTest, APlacementHoldsForItsFrameAndIncarnation) {
   ASSERT_NE(people_.find("w"), nullptr);
   EXPECT_EQ(people_.find("w")->operation.revision, 2);
   EXPECT_EQ(people_.find("x"), nullptr);
+}
+
+TEST_F(PeopleTest, WhereAnAgentWasPlacedByItsPosesItsLayerLies) {
+  Transform later = T_;
+  later.translation().x() += 1;
+  make("s1", "eva", Correction::Placement{"robot1", "f", 7, true, T_});
+  make("p1", "tom", Correction::Placement{"robot1", "f", 0, false, later});
+  ASSERT_NE(people_.T_map_agent("robot1", "f", 7), nullptr);
+  EXPECT_EQ(people_.T_map_agent("robot1", "f", 7)->translation(), later.translation()) << "the later one";
+  EXPECT_NE(people_.T_map_agent("robot1", "f", 8), nullptr);
+  EXPECT_EQ(people_.T_map_agent("robot1", "g", 8), nullptr) << "another frame";
+  EXPECT_EQ(people_.T_map_agent("robot1", "f", kLoadedIncarnation), nullptr) << "a file tells where its layers lie";
+  EXPECT_EQ(people_.carried_over("robot1", "g", 8, 5), std::nullopt);
+  const auto carried = people_.carried_over("robot1", "f", 8, 5);
+  ASSERT_TRUE(carried);
+  EXPECT_EQ(carried->id, "carried-2");
+  EXPECT_EQ(carried->author, "tom");
+  EXPECT_EQ(carried->revision, 3);
+  BrickSet touched;
+  people_.apply(*carried, touched);
+  EXPECT_EQ(people_.carried_over("robot1", "f", 8, 5), std::nullopt) << "once";
+  EXPECT_NE(people_.T_map_agent("robot1", "f", 8), nullptr);
+  EXPECT_EQ(people_.T_map_agent("robot1", "f", 9), nullptr) << "it was for the one before";
+  EXPECT_EQ(people_.T_map_agent("robot1", "f", 0), nullptr);
+}
+
+TEST_F(PeopleTest, WhatIsNobodysIsHistoryOnly) {
+  make("p1", "tom", Correction::Placement{"robot1", "f", 0, false, T_});
+  make("n1", "tom", Correction::Placement{"robot1", "f", kNobodys, true, Transform::Identity()});
+  ASSERT_NE(people_.T_map_agent("robot1", "f", 0), nullptr);
+  EXPECT_EQ(people_.T_map_agent("robot1", "f", kNobodys), nullptr);
+  EXPECT_EQ(people_.placements().at("robot1").size(), 1u);
+  EXPECT_NE(people_.find("n1"), nullptr);
 }
 
 }  // namespace
