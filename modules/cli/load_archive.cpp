@@ -9,6 +9,9 @@
 namespace concord {
 namespace {
 
+/// Each time merge looks whether the layers have arrived.
+constexpr std::int64_t kAskToLoadAgain = 1'000'000;
+
 bool is_refusal(const Answer* answer) { return answer != nullptr && !answer->ok && !is_busy(*answer); }
 bool is_done(const Answer* answer) { return answer != nullptr && answer->ok; }
 
@@ -51,7 +54,7 @@ Outcome load_archive(Live& live, const MapRequest& request, const Common& common
         if (is_refusal(ingest()) || is_refusal(merge()) || (is_done(ingest()) && is_done(merge()))) return true;
         if (live.bus().now() >= due) {
           live.bus().publish("in/map_request", message);
-          due = live.bus().now() + kAskAgain;
+          due = live.bus().now() + kAskToLoadAgain;
         }
         return false;
       });

@@ -84,6 +84,7 @@ void IngestNode::subscribe() {
   hear("in/[^/]+/cloud", &IngestNode::on_cloud);
   hear("in/agent_request", &IngestNode::on_agent_request);
   hear("in/map_request", &IngestNode::on_map_request);
+  hear("out/answer", &IngestNode::on_answer);
   hear("in/downsample", &IngestNode::on_downsample);
   bus_.every(kSlicePeriod, [this] { write_some(); });
   bus_.every(kCountPeriod, [this] {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -55,11 +56,13 @@ class IngestNode {
 
   void on_agent_request(const std::string& channel, const AgentRequest& request);
   void on_map_request(const std::string& channel, const MapRequest& request);
+  void await_merge(const MapRequest& request);
+  void on_answer(const std::string& channel, const Answer& word);
   void on_downsample(const std::string& channel, const DownsampleRequest& request);
   [[nodiscard]] Result<std::int64_t> reset(const std::string& id);
   [[nodiscard]] Result<std::int64_t> remove(const std::string& id);
   [[nodiscard]] Result<std::int64_t> load_octomap(const MapRequest& request, const std::filesystem::path& file);
-  [[nodiscard]] Result<std::int64_t> load_archive(const MapRequest& request, const std::filesystem::path& file);
+  [[nodiscard]] Result<std::int64_t> load_archive(const MapRequest& request, std::int64_t incarnation);
   [[nodiscard]] Result<std::int64_t> downsample(const DownsampleRequest& request);
   [[nodiscard]] Answer answer_to(const std::string& id, const Result<std::int64_t>& count, const std::string& done);
 
@@ -75,6 +78,7 @@ class IngestNode {
   AgentStreams streams_;
   ReplyQueue replies_;
   RecentAnswers answers_;
+  std::deque<MapRequest> awaiting_;  ///< to load a native map; the oldest first
   std::map<std::string, Input> inputs_;
   std::map<std::string, std::int64_t> said_over_;  ///< when an agent was last told that its frame is over
   std::int64_t write_at_ = 0;                      ///< not before this time

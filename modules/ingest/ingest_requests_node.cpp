@@ -1,5 +1,6 @@
 // The part of IngestNode that does what people ask: resetting, removing and loading agents, coarse views.
 
+#include <algorithm>
 #include <cmath>
 
 #include <spdlog/spdlog.h>
@@ -16,6 +17,8 @@ namespace {
 /// A part of an answer fits one frame on the wire: 90 points are 1080 bytes.
 constexpr std::size_t kPointsInPart = 90;
 constexpr double kMaxCell = 10.0;  // metres
+constexpr std::size_t kMostAwaiting = 64;
+const std::string kMerge = "merge";
 
 tl::unexpected<Error> unknown_agent(const std::string& id) {
   return refuse(Code::kNoAgent, "no agent is called " + id + "; concord agents lists them");
@@ -62,11 +65,42 @@ void IngestNode::on_map_request(const std::string&, const MapRequest& request) {
   if (answers_.repeat(request.id, process_, content)) return;
   const auto file = find_map(site_.state / "maps", request);
   if (!file) return answers_.give(answer_to(request.id, tl::unexpected(file.error()), ""), content);
-  const Answer answer = file->is_archive ? answer_to(request.id, load_archive(request, file->path),
-                                                     "loaded; its agents lie where the map says")
-                                         : answer_to(request.id, load_octomap(request, file->path),
-                                                     "loaded; agent " + loaded_as(request) + " waits to be aligned");
-  answers_.give(answer, content);
+  if (file->is_archive) return await_merge(request);
+  answers_.give(answer_to(request.id, load_octomap(request, file->path),
+                          "loaded; agent " + loaded_as(request) + " waits to be aligned"),
+                content);
+}
+
+/// A native map is loaded when merge has said that nothing speaks against it: then neither has half of it.
+void IngestNode::await_merge(const MapRequest& request) {
+  if (!request.agent.empty()) {
+    const auto refusal =
+        refuse(Code::kBadRequest, "a .concord file names its agents; leave agent empty, or load format ot or bt");
+    return answer(bus_, answer_to(request.id, refusal, ""));
+  }
+  std::erase_if(awaiting_, [&](const MapRequest& other) { return other.id == request.id; });
+  awaiting_.push_back(request);
+  if (awaiting_.size() > kMostAwaiting) awaiting_.pop_front();
+  answer(bus_, {request.id, process_, false, name(Code::kBusy), "waits for merge to check the map", 0, 0});
+}
+
+/// Of merge, to a request that waits for it: see map_archive.md.
+void IngestNode::on_answer(const std::string&, const Answer& word) {
+  if (word.process != kMerge) return;
+  const auto it = std::ranges::find(awaiting_, word.id, &MapRequest::id);
+  if (it == awaiting_.end()) return;
+  const bool is_busy = !word.ok && word.code == name(Code::kBusy);
+  const bool may_load = is_busy && word.revision >= kLoadedIncarnation;
+  if (is_busy && !may_load) return;
+  const MapRequest request = *it;
+  awaiting_.erase(it);
+  if (word.ok) {
+    answers_.give(answer_to(request.id, 0, "merge has it whole: nothing is left to load"), content_of(request));
+  } else if (may_load) {
+    answers_.give(
+        answer_to(request.id, load_archive(request, word.revision), "loaded; its agents lie where the map says"),
+        content_of(request));
+  }
 }
 
 /// Done again when it is asked again: parts may have been lost. Not while they are on their way.
@@ -126,14 +160,13 @@ Result<std::int64_t> IngestNode::load_octomap(const MapRequest& request, const s
 }
 
 /// All of its layers or none. A request whose answer was lost with the process that gave it is known by what it loaded.
-Result<std::int64_t> IngestNode::load_archive(const MapRequest& request, const std::filesystem::path& file) {
-  if (!request.agent.empty()) {
-    return refuse(Code::kBadRequest, "a .concord file names its agents; leave agent empty, or load format ot or bt");
-  }
-  const auto bytes = read_whole_file(file, kMaxArchiveBytes);
-  if (!bytes) return tl::unexpected(bytes.error());
-  const std::int64_t incarnation = loaded_incarnation(*bytes, request.id);
+Result<std::int64_t> IngestNode::load_archive(const MapRequest& request, std::int64_t incarnation) {
   if (const auto known = ingest_.loaded(incarnation)) return *known;
+  const auto bytes = read_whole_file(site_.state / "maps" / (request.map + ".concord"), kMaxArchiveBytes);
+  if (!bytes) return tl::unexpected(bytes.error());
+  if (loaded_incarnation(*bytes, request.id) != incarnation) {
+    return refuse(Code::kBusy, "the file has changed since merge checked it; ask again");
+  }
   auto agents = ingest_.from_archive(*bytes, request.id);
   if (!agents) return tl::unexpected(agents.error());
   if (auto done = store_.add(*agents); !done) return tl::unexpected(done.error());

@@ -28,6 +28,17 @@ Result<Bytes> MapStore::read(const std::string& name, const std::string& format,
   return read_whole_file(path_of(name, format), most);
 }
 
+Result<MapStore::Version> MapStore::version(const std::string& name, const std::string& format) const {
+  const std::filesystem::path path = path_of(name, format);
+  std::error_code error;
+  Version version;
+  version.bytes = std::filesystem::file_size(path, error);
+  if (!error) version.written = std::filesystem::last_write_time(path, error);
+  if (!error) return version;
+  if (error == std::errc::no_such_file_or_directory) return refuse(Code::kNotFound, path.string() + " is not there");
+  return refuse(Code::kIo, path.string() + ": " + error.message());
+}
+
 Result<std::vector<std::pair<std::string, std::int64_t>>> MapStore::list() const {
   std::vector<std::pair<std::string, std::int64_t>> files;
   std::error_code error;

@@ -25,6 +25,15 @@ class MapStore {
   /// Refused: kNotFound, kTooLarge (before memory is taken), kIo.
   [[nodiscard]] Result<Bytes> read(const std::string& name, const std::string& format, std::uint64_t most) const;
 
+  /// What changes when the file does.
+  struct Version {
+    std::uintmax_t bytes = 0;
+    std::filesystem::file_time_type written;
+    bool operator==(const Version&) const = default;
+  };
+  /// Refused: kNotFound, kIo.
+  [[nodiscard]] Result<Version> version(const std::string& name, const std::string& format) const;
+
   /// File names with extension and sizes, sorted.
   [[nodiscard]] Result<std::vector<std::pair<std::string, std::int64_t>>> list() const;
 

@@ -4,13 +4,13 @@
 #include <utility>
 
 #include "core/octomap_writer.hpp"
-#include "merge/loaded_corrections.hpp"
 
 namespace concord {
 namespace {
 
-const std::string kRequests = "in/map_request";
-const std::string kNative = "concord";
+/// Long after a client that waits for layers would have asked again.
+constexpr std::int64_t kKeepOpened = 60'000'000;
+constexpr std::int64_t kForgetPeriod = 10'000'000;
 
 }  // namespace
 
@@ -24,6 +24,9 @@ MapsNode::MapsNode(const NodeContext& context, const Parts& parts)
                          case MapRequest::Op::kLoad: return load(request);
                        }
                      });
+  context_.bus.every(kForgetPeriod, [this] {
+    if (opened_ && context_.bus.now() - opened_->asked >= kKeepOpened) opened_.reset();
+  });
 }
 
 void MapsNode::save(const MapRequest& request) {
@@ -41,6 +44,9 @@ Result<std::int64_t> MapsNode::write(const MapRequest& request) {
   parts_.map.refold_and_send();
   if (!parts_.map.begun()) {
     return refuse(Code::kBusy, "the map is not whole again after a restart; ask again in some seconds");
+  }
+  if (request.format == kNative) {
+    if (const auto whole = parts_.agents.all_whole(); !whole) return tl::unexpected(whole.error());
   }
   if (const auto may = maps_.check(request.map, request.format, request.overwrite); !may) {
     return tl::unexpected(may.error());
@@ -78,66 +84,6 @@ void MapsNode::list(const MapRequest& request) {
   if (!files) return replies_.deny(kRequests, request.id, files.error());
   context_.bus.publish("out/map_list", encode(MapList{request.id, *files}, context_.bus.now()));
   replies_.grant(request.id, 0, static_cast<std::int64_t>(files->size()), "listed");
-}
-
-/// Only native maps hold anything that is merge's; ingest answers for the others.
-void MapsNode::load(const MapRequest& request) {
-  if (request.format != kNative && !(request.format.empty() && maps_.contains(request.map, kNative))) return;
-  const std::uint64_t content = content_of(request);
-  if (answers_.repeat(request.id, context_.process, content)) return;
-  if (parts_.people_node.repeat(kRequests, request.id, content)) return;
-  const auto taken = take(request);
-  if (!taken) return replies_.deny(kRequests, request.id, taken.error());
-  answers_.give(replies_.granted(request.id, parts_.people.revision(), *taken, "took over what people corrected"),
-                content);
-}
-
-/// Returns how many corrections followed.
-Result<std::int64_t> MapsNode::take(const MapRequest& request) {
-  if (!request.agent.empty()) {
-    return refuse(Code::kBadRequest, "a .concord file names its agents; leave agent empty, or load format ot or bt");
-  }
-  const auto file = maps_.read(request.map, kNative, kMaxArchiveBytes);
-  if (!file) return tl::unexpected(file.error());
-  MapArchiveOptions options;
-  options.resolution = context_.site.resolution;
-  options.known_voxels = static_cast<std::uint64_t>(context_.site.ingest.max_known_voxels);
-  options.keep_bricks = false;
-  const auto archive = read_map_archive(*file, options);
-  if (!archive) return tl::unexpected(archive.error());
-  const Loading loading{*archive, request.id, loaded_incarnation(*file, request.id), context_.bus.now()};
-  auto ours = check_of_ours();
-  if (!ours) return tl::unexpected(ours.error());
-  auto corrections = corrections_to_load(loading, parts_.people, std::move(*ours),
-                                         [&](const std::string& agent) { return context_.site.agent(agent).weight; });
-  if (!corrections) return tl::unexpected(corrections.error());
-  if (const auto there = check_layers(*archive, loading.incarnation); !there) return tl::unexpected(there.error());
-  const auto count = static_cast<std::int64_t>(corrections->size());
-  if (const auto done = parts_.people_node.commit(*corrections); !done) return tl::unexpected(done.error());
-  return count;
-}
-
-/// Whether ingest's streams say that the file's layers are agents now, whole: before that they cannot be placed.
-Result<void> MapsNode::check_layers(const MapArchive& archive, std::int64_t incarnation) const {
-  for (const SavedLayer& layer : archive.layers) {
-    const auto state = parts_.agents.state_of(layer.head.agent);
-    if (!state || !state->synced || parts_.agents.incarnation(layer.head.agent) != incarnation) {
-      return refuse(Code::kBusy, layer.head.agent + " has not been loaded yet; ask again in a second");
-    }
-  }
-  return {};
-}
-
-Result<CorrectionCheck> MapsNode::check_of_ours() {
-  CorrectionCheck check;
-  std::optional<Error> refused;
-  const auto read = parts_.store.for_each([&](const Correction& correction) {
-    if (refused) return;
-    if (const auto taken = check.take(correction); !taken) refused = taken.error();
-  });
-  if (!read) return tl::unexpected(read.error());
-  if (refused) return tl::unexpected(*refused);
-  return check;
 }
 
 }  // namespace concord

@@ -1,5 +1,10 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "bus/process.hpp"
 #include "bus/recent_answers.hpp"
 #include "bus/replies.hpp"
@@ -37,15 +42,36 @@ class MapsNode {
   [[nodiscard]] Result<std::int64_t> write(const MapRequest& request);
   [[nodiscard]] Result<Bytes> encoded(const std::string& format);
   [[nodiscard]] Result<Bytes> archived();
-  [[nodiscard]] Result<std::int64_t> take(const MapRequest& request);
-  [[nodiscard]] Result<void> check_layers(const MapArchive& archive, std::int64_t incarnation) const;
-  [[nodiscard]] Result<CorrectionCheck> check_of_ours();
+
+  /// A native file that is being loaded, between its request and the arrival of its layers: it is read once.
+  struct Opened {
+    std::string request_id;
+    std::uint64_t content = 0;  ///< of the request
+    MapStore::Version version;
+    MapArchive archive;  ///< without bricks
+    std::int64_t incarnation = 0;
+    std::int64_t asked = 0;          ///< last, microseconds
+    std::int64_t fits_at = -1;       ///< our revision that its corrections were last found to follow on
+    CorrectionCheck ours;            ///< has taken our corrections
+    std::int64_t ours_revision = 0;  ///< up to this one
+  };
+  /// Whether the file may be loaded, then whether its layers are there, then what people corrected.
+  void advance(const MapRequest& request, std::uint64_t content);
+  [[nodiscard]] Result<void> open(const MapRequest& request, std::uint64_t content);
+  [[nodiscard]] Result<std::vector<Correction>> following();
+  [[nodiscard]] Result<void> take_ours();
+  [[nodiscard]] bool has_layers() const;
+  void say_may_load(const MapRequest& request);
+
+  static inline const std::string kRequests = "in/map_request";
+  static inline const std::string kNative = "concord";
 
   NodeContext context_;
   Parts parts_;
   Replies replies_;
   MapStore maps_;
   RecentAnswers answers_;
+  std::optional<Opened> opened_;
 };
 
 }  // namespace concord

@@ -7,6 +7,7 @@
 
 #include "bus/site.hpp"
 #include "core/byte_stream.hpp"
+#include "core/correction_check.hpp"
 #include "core/voxel_boxes.hpp"
 #include "merge/merge_schema.hpp"
 #include "merge/number_text.hpp"
@@ -55,7 +56,7 @@ Result<std::vector<VoxelIndex>> voxels_of(ByteSpan bytes) {
     }
     boxes.push_back({{c[0], c[1], c[2]}, {c[3], c[4], c[5]}});
   }
-  return expand(boxes, 2 * kMaxEditVoxels);  // the first version let a million through
+  return expand(boxes, kMaxStoredEditVoxels);
 }
 
 }  // namespace
@@ -216,10 +217,12 @@ struct MergeStore::Readers {
   Statement edit, zone, placement, weight;
 };
 
-Result<void> MergeStore::for_each(const std::function<void(Correction)>& visit) {
+Result<void> MergeStore::for_each(const std::function<void(Correction)>& visit, std::int64_t after) {
   Readers readers(database_);
   Statement rows = database_.prepare(
-      "SELECT revision, id, author, utime, kind, subject, content FROM corrections ORDER BY revision");
+      "SELECT revision, id, author, utime, kind, subject, content FROM corrections WHERE revision > ? ORDER BY "
+      "revision");
+  rows.bind(after);
   for (;;) {
     const Result<bool> row = rows.step();
     if (!row) return tl::unexpected(row.error());

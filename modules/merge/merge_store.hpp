@@ -21,8 +21,8 @@ class MergeStore {
   /// may succeed. @pre their revisions and ids are new.
   [[nodiscard]] Result<void> put(std::span<const Correction> corrections);
 
-  /// Hands on each correction in the order of revisions. Refused (kIo): the file was damaged.
-  [[nodiscard]] Result<void> for_each(const std::function<void(Correction)>& visit);
+  /// Hands on each correction above revision `after`, in the order of revisions. Refused (kIo): the file was damaged.
+  [[nodiscard]] Result<void> for_each(const std::function<void(Correction)>& visit, std::int64_t after = 0);
 
  private:
   struct PutDetail;

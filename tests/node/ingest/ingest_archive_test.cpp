@@ -2,6 +2,7 @@
 
 #include "core/map_archive.hpp"
 #include "station.hpp"
+#include "store/whole_file.hpp"
 
 namespace concord::testing {
 namespace {
@@ -31,7 +32,21 @@ class IngestArchiveTest : public IngestStation {
         .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   }
   Answer load(const std::string& id, const std::string& format = "concord", const std::string& agent = "") {
-    return start_->ask(MapRequest{id, MapRequest::Op::kLoad, "hall", format, false, agent});
+    const MapRequest request{id, MapRequest::Op::kLoad, "hall", format, false, agent};
+    start_->answers[id].clear();
+    start_->say_at("in/map_request", request);
+    if (const Answer& answer = start_->answers[id].back(); answer.code != "BUSY") return answer;
+    return merge_says({id, "merge", false, "BUSY", "", incarnation_for(id), 0});
+  }
+  std::int64_t incarnation_for(const std::string& id) const {
+    const auto bytes = read_whole_file(site_.state / "maps/hall.concord", 10'000'000);
+    return bytes ? loaded_incarnation(*bytes, id) : kLoadedIncarnation;
+  }
+  /// What ingest answers after it.
+  Answer merge_says(const Answer& word) {
+    start_->say_at("out/answer", word);
+    start_->run(0.5);
+    return start_->answers[word.id].back();
   }
   /// Neither now nor after a restart is anybody there.
   void expect_nothing_changed() {
@@ -61,6 +76,35 @@ TEST_F(IngestArchiveTest, every_layer_is_an_agent_of_its_id_in_its_frame) {
   }
 }
 
+TEST_F(IngestArchiveTest, nothing_is_loaded_before_merge_says_that_this_very_file_may_be) {
+  const Bytes file = save(two_);
+  const MapRequest request{"q1", MapRequest::Op::kLoad, "hall", "concord", false, ""};
+  EXPECT_EQ(start_->ask(request).code, "BUSY");
+  merge_says({"q1", "merge", false, "BUSY", "starts", 0, 0});
+  merge_says({"q1", "planner", false, "BUSY", "", incarnation_for("q1"), 0});
+  merge_says({"other", "merge", false, "BUSY", "", incarnation_for("q1"), 0});
+  expect_nothing_changed();
+  EXPECT_EQ(start_->ask(request).code, "BUSY");
+  merge_says({"q1", "merge", false, "BUSY", "", incarnation_for("q1") - 1, 0});
+  expect_nothing_changed();
+  EXPECT_EQ(start_->ask(request).code, "BUSY");
+  merge_says({"q1", "merge", false, "EXISTS", "a zone has this name", 0, 0});
+  merge_says({"q1", "merge", false, "BUSY", "", incarnation_for("q1"), 0});
+  expect_nothing_changed();
+  EXPECT_TRUE(load("q1").ok) << "asked again";
+}
+
+TEST_F(IngestArchiveTest, what_merge_has_whole_is_not_loaded_again) {
+  save(two_);
+  EXPECT_TRUE(load("q1").ok);
+  restart();
+  EXPECT_TRUE(start_->ask(AgentRequest{"r1", "robot1", AgentRequest::Op::kRemove}).ok);
+  EXPECT_EQ(start_->ask(MapRequest{"q1", MapRequest::Op::kLoad, "hall", "concord", false, ""}).code, "BUSY");
+  EXPECT_TRUE(merge_says({"q1", "merge", true, "OK", "", 7, 0}).ok);
+  start_->run(1);
+  EXPECT_EQ(start_->counters.get("agents"), 1);
+}
+
 TEST_F(IngestArchiveTest, without_a_format_the_native_file_comes_first) {
   const auto octomap = write_octomap_file(some_map(3), site_.resolution, OctomapFormat::kFull).value();
   put_file("hall.ot", octomap);
@@ -68,6 +112,7 @@ TEST_F(IngestArchiveTest, without_a_format_the_native_file_comes_first) {
   EXPECT_TRUE(load("q1", "").ok);
   EXPECT_EQ(start_->follower["robot2"].map, two_[1].bricks);
   EXPECT_TRUE(load("q2", "ot").ok);
+  start_->run(0.5);
   EXPECT_EQ(start_->follower["hall"].map, some_map(3));
 }
 

@@ -90,6 +90,11 @@ struct Start {
     bus.publish(channel, encode(value));
     bus.deliver();
   }
+  template <class Value>
+  void say_at(const std::string& channel, const Value& value) {
+    bus.publish(channel, encode(value, bus.now()));
+    bus.deliver();
+  }
   template <class Request>
   Answer ask(const std::string& channel, const Request& request) {
     const std::size_t before = answers[request.id].size();

@@ -156,6 +156,58 @@ TEST_F(NativeMapTest, ATakenZoneNameOrIdRefusesAllOfIt) {
   EXPECT_EQ(history().size(), 1u);
 }
 
+TEST_F(NativeMapTest, WhatWouldBeRefusedIsRefusedBeforeItsLayersMayBeLoaded) {
+  work_and_move();
+  ASSERT_TRUE(zone("mine", "door").ok);
+  EXPECT_EQ(load("l1").code, "EXISTS");
+  const Box box{{0, 0, 0}, {1, 1, 1}};
+  ASSERT_TRUE(
+      ask("in/zone", encode(ZoneRequest{"gone", "eva", ZoneRequest::Op::kDelete, "door", {}, box, {}, -1, 0})).ok);
+  const Answer may = load("l1");
+  EXPECT_EQ(may.code, "BUSY");
+  EXPECT_EQ(may.revision, loaded_incarnation(bytes_, "l1")) << "of this request and this file";
+  ASSERT_TRUE(zone("mine2", "door").ok);
+  EXPECT_EQ(load("l1").code, "EXISTS") << "looked at again when people have changed something";
+}
+
+TEST_F(NativeMapTest, AZoneThatIsGoneInTheFileMayHaveTheNameOfOneHere) {
+  send_wall();
+  const Box box{{0, 0, 0}, {1, 1, 1}};
+  ASSERT_TRUE(zone("z1", "door").ok);
+  ASSERT_TRUE(
+      ask("in/zone", encode(ZoneRequest{"z2", "eva", ZoneRequest::Op::kDelete, "door", {}, box, {}, -1, 0})).ok);
+  ASSERT_TRUE(zone("z3", "lift").ok);
+  run();
+  ASSERT_TRUE(ask_map("s1", MapRequest::Op::kSave).ok);
+  bytes_ = *read_whole_file(file(), 100'000);
+  move();
+  ASSERT_TRUE(zone("mine", "door").ok);
+  load_layers("l1");
+  const Answer loaded = load("l1");
+  ASSERT_TRUE(loaded.ok) << loaded.message;
+  run();
+  ASSERT_EQ(zones_->items().size(), 2u);
+  EXPECT_EQ(zones_->items()[0].name, "door");
+  EXPECT_EQ(zones_->items()[1].name, "lift");
+}
+
+TEST_F(NativeMapTest, AnUndoThatIsSoAlreadyIsNothingLeftToDo) {
+  send_wall();
+  const Bytes edit_message = encode(edit_of("e1", "eva", {3, 0, 0}));
+  ASSERT_TRUE(ask("in/edit", edit_message).ok);
+  ASSERT_TRUE(undo("u1", "e1").ok);
+  run();
+  ASSERT_TRUE(ask_map("s1", MapRequest::Op::kSave).ok);
+  bytes_ = *read_whole_file(file(), 100'000);
+  move();
+  ASSERT_TRUE(ask("in/edit", edit_message).ok) << "the same edit, undone by another request";
+  ASSERT_TRUE(undo("mine", "e1").ok);
+  load_layers("l1");
+  const Answer loaded = load("l1");
+  ASSERT_TRUE(loaded.ok) << loaded.message;
+  EXPECT_EQ(history().size(), 2u);
+}
+
 TEST_F(NativeMapTest, ACorruptOrForeignFileChangesNothing) {
   work_and_move();
   load_layers("l1");
@@ -172,6 +224,7 @@ TEST_F(NativeMapTest, ACorruptOrForeignFileChangesNothing) {
 }
 
 TEST_F(NativeMapTest, IsOverwrittenOnlyWhenAsked) {
+  run(5'000'000);
   ASSERT_TRUE(ask_map("s1", MapRequest::Op::kSave).ok);
   EXPECT_EQ(ask_map("s2", MapRequest::Op::kSave).code, "EXISTS");
   EXPECT_TRUE(ask_map("s3", MapRequest::Op::kSave, true).ok);
