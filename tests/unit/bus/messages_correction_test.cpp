@@ -2,6 +2,8 @@
 #include <concord/operation_t.hpp>
 #include <concord/zone_request_t.hpp>
 
+#include <limits>
+
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
@@ -132,7 +134,8 @@ RC_GTEST_PROP(MessagesCorrectionProperty, any_zone_request_comes_back, ()) {
 }
 
 RC_GTEST_PROP(MessagesCorrectionProperty, any_lease_request_comes_back, ()) {
-  comes_back(LeaseRequest{"l", "me", true, any_volume(), any_frame(), any_revision()});
+  const auto utime = *rc::gen::inRange<std::int64_t>(0, std::int64_t{1} << 62);
+  comes_back(LeaseRequest{"l", "me", true, any_volume(), any_frame(), utime});
 }
 
 RC_GTEST_PROP(MessagesCorrectionProperty, any_history_comes_back_from_its_parts, ()) {
@@ -374,6 +377,19 @@ TEST(MessagesCorrection, ListsAreChecked) {
   EXPECT_FALSE(decode<ListPart<Lease>>(encode(ListPart<Lease>{1, 0, 1, {lease}, {}}, 1)));
   EXPECT_FALSE(decode<ListDigest>(encode(ListDigest{1, -1}, 1)));
   EXPECT_FALSE(decode<ListDigest>(encode(ListDigest{1, 1001}, 1)));
+}
+
+TEST(MessagesCorrection, AStampThatIsNoTimeIsRefused) {
+  for (const std::int64_t none :
+       {std::numeric_limits<std::int64_t>::min(), std::int64_t{-1}, std::numeric_limits<std::int64_t>::max()}) {
+    const auto pose = decode<AgentPose>(encode(AgentPose{"", "odom", Transform::Identity(), none}));
+    ASSERT_FALSE(pose);
+    EXPECT_EQ(pose.error().error.code, Code::kBadRequest);
+    const auto seen = decode<LocaliseRequest>(encode(LocaliseRequest{"l", "me", "r", Transform::Identity(), {}, none}));
+    ASSERT_FALSE(seen);
+    EXPECT_EQ(seen.error().error.code, Code::kBadRequest);
+    EXPECT_EQ(seen.error().id, "l");
+  }
 }
 
 }  // namespace
