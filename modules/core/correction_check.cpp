@@ -34,8 +34,8 @@ Result<void> check_agent(const std::string& agent) {
 }
 
 Result<void> check_voxels(const std::vector<VoxelIndex>& voxels) {
-  if (voxels.size() > static_cast<std::size_t>(kMaxEditVoxels)) {
-    return refuse(Code::kTooLarge, "an edit of over " + std::to_string(kMaxEditVoxels) + " voxels");
+  if (voxels.size() > static_cast<std::size_t>(kMaxStoredEditVoxels)) {
+    return refuse(Code::kTooLarge, "an edit of over " + std::to_string(kMaxStoredEditVoxels) + " voxels");
   }
   for (std::size_t i = 0; i < voxels.size(); ++i) {
     if (!in_bounds(voxels[i])) return refuse(Code::kOutOfBounds, "a voxel of the edit is out of bounds");
@@ -94,6 +94,11 @@ struct CorrectionCheck::Follow {
     if (!fits_op(edit) || share_any(edit.added, edit.deleted)) {
       return refuse(Code::kBadRequest, "the edit's voxels are not what its op leads to");
     }
+    const auto pins = static_cast<std::int64_t>(edit.added.size() + edit.deleted.size());
+    if (pins > kMaxPins - list.pins_) {
+      return refuse(Code::kTooLarge, "all edits together pin over " + std::to_string(kMaxPins) + " voxels");
+    }
+    list.pins_ += pins;
     list.edits_.emplace(id, true);
     return {};
   }

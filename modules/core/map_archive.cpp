@@ -14,6 +14,8 @@ namespace concord {
 namespace archive {
 namespace {
 
+static_assert(kMaxArchivePins == kMaxPins, "what can be made can be saved");
+
 tl::unexpected<Error> too_large(const std::string& what) {
   return refuse(Code::kTooLarge, "map file: over " + what + " in one file");
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "core/correction_check.hpp"
 #include "core/map_archive_parts.hpp"
 #include "core/voxel_boxes.hpp"
 
@@ -189,7 +190,7 @@ struct AppendWhat {
 };
 
 Result<Correction::Edit> read_edit(FieldReader& in, const Room& room) {
-  const std::uint64_t most = std::min<std::uint64_t>(kMaxEditVoxels, room.pins);
+  const std::uint64_t most = std::min<std::uint64_t>(kMaxStoredEditVoxels, room.pins);
   Correction::Edit edit;
   edit.op = read_one_of(in, kEditOps);
   for (auto* voxels : {&edit.added, &edit.deleted}) {

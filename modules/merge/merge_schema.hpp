@@ -51,6 +51,10 @@ DROP TABLE temp.ordered;
 DROP TABLE edits_1;
 DROP TABLE transforms;
 )sql",
+    // The first release took any time; a map file takes none before 1970.
+    R"sql(
+UPDATE corrections SET utime = 0 WHERE utime < 0;
+)sql",
 };
 
 }  // namespace concord

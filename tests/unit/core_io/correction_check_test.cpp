@@ -97,10 +97,18 @@ TEST_F(CorrectionCheckTest, AnEditPinsSortedVoxelsAsItsOpDoes) {
   EXPECT_EQ(take(edit_of({{kMaxVoxel, 0, 0}})), "OUT_OF_BOUNDS");
   EXPECT_EQ(take(edit_of({{INT32_MIN, 0, 0}, {INT32_MAX, 0, 0}})), "OUT_OF_BOUNDS");
   std::vector<VoxelIndex> many;
-  for (int i = 0; i <= kMaxEditVoxels; ++i) many.push_back({i / 1000, i % 1000, 0});
+  for (int i = 0; i <= kMaxStoredEditVoxels; ++i) many.push_back({i / 1000, i % 1000, 0});
   EXPECT_EQ(take(edit_of(many)), "TOO_LARGE");
   many.pop_back();
   EXPECT_EQ(take(edit_of(many)), "OK");
+}
+
+TEST_F(CorrectionCheckTest, AllEditsTogetherAreBounded) {
+  std::vector<VoxelIndex> many;
+  for (int i = 0; i < kMaxStoredEditVoxels; ++i) many.push_back({i / 1000, i % 1000, 0});
+  const Correction::Edit edit = edit_of(many);
+  for (std::int64_t i = 0; i < kMaxPins / kMaxStoredEditVoxels; ++i) ASSERT_EQ(take(edit), "OK");
+  EXPECT_EQ(take(edit_of({{0, 0, 0}})), "TOO_LARGE");
 }
 
 TEST_F(CorrectionCheckTest, EditsAreUndoneAndRedoneByTurns) {
