@@ -9,6 +9,7 @@
 #include "cli/numbers.hpp"
 #include "cli/report.hpp"
 #include "cli/selection_options.hpp"
+#include "core/text.hpp"
 
 namespace concord {
 namespace {
@@ -64,8 +65,15 @@ void print_edit(const Answer& answer, const std::optional<Operation>& made, doub
   common.print(object, words);
 }
 
+/// What the wire takes: ids may be another program's, and of an edit that was made with any of them.
+Result<void> check_id(const std::string& id) {
+  if (is_request_id(id)) return {};
+  return refuse(Code::kBadName, "an id is 1 to 80 printable bytes of UTF-8");
+}
+Result<void> check_own_id(const std::string& id) { return id.empty() ? Result<void>() : check_id(id); }
+
 Outcome edit(const Options& options, const Common& common) {
-  if (!options.id.empty() && !is_name(options.id)) return bad_name(options.id);
+  if (const auto fine = check_own_id(options.id); !fine) return fail(fine.error());
   const auto move = move_of(options);
   if (!move) return fail(move.error());
   auto shape = shape_of(options.selection, common.site().resolution);
@@ -87,8 +95,8 @@ Outcome edit(const Options& options, const Common& common) {
 }
 
 Outcome undo(const UndoOptions& options, bool redo, const Common& common) {
-  if (!is_name(options.edit)) return bad_name(options.edit);
-  if (!options.id.empty() && !is_name(options.id)) return bad_name(options.id);
+  const auto fine = check_id(options.edit).and_then([&] { return check_own_id(options.id); });
+  if (!fine) return fail(fine.error());
   Live live(common);
   const UndoRequest request{live.id_or_new(options.id), author_or_user(options.author), options.edit, redo,
                             live.bus().now()};
@@ -116,7 +124,7 @@ void add_edit(Program& program) {
   add_shape_options(pin, options->selection);
   pin.add_option("--move", options->move, "\"dx dy dz\": how far, with move; whole voxels of the map are moved");
   pin.add_option("--base-revision", options->base_revision,
-                 "the revision that was seen: refused if others changed these voxels since")
+                 "the revision that was seen: refused if these voxels were changed since")
       ->check(CLI::NonNegativeNumber);
   pin.add_option("--author", options->author, "who edits; without it $USER");
   pin.add_option("--id", options->id, "of the edit: asked again with it, it is done once");
