@@ -65,6 +65,26 @@ TEST(EditLayer, TouchesOnlyBricksWhosePinsChange) {
   EXPECT_EQ(edits.touched.size(), 1u) << "pinned alike before";
 }
 
+TEST(EditLayer, KeepsScatteredVoxelsInAFewBytesEach) {
+  std::vector<VoxelIndex> added;
+  for (int i = 0; i < 1000; ++i) added.push_back({8 * i, i % 8, 3});
+  const PinnedBricks bricks = by_brick(edit_of(added, {{1, 1, 9}, {2, 1, 9}, {3, 1, 15}}));
+  const KeptPins kept(bricks);
+  EXPECT_EQ(kept.expanded(), bricks);
+  EXPECT_LE(kept.bytes(), 32 * bricks.size());
+}
+
+TEST(EditLayer, AllEditsTogetherAreBounded) {
+  Counting edits;
+  std::vector<VoxelIndex> added;
+  for (int i = 0; i < 250'000; ++i) added.push_back({8 * (i / 500), 8 * (i % 500), 0});
+  for (int i = 0; i < 8; ++i) {
+    ASSERT_TRUE(edits.layer.check(by_brick(edit_of(added, {}))));
+    edits.apply("e" + std::to_string(i), added, {});
+  }
+  EXPECT_EQ(edits.layer.check(by_brick(edit_of({{0, 0, 0}}, {}))).error().code, Code::kTooLarge);
+}
+
 TEST(EditLayer, KnowsWhatChangedSince) {
   Counting edits;
   edits.apply("one", {{0, 0, 0}}, {});
