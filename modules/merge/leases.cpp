@@ -12,6 +12,8 @@ namespace {
 /// is well below.
 constexpr std::int64_t kMostLooks = 1'000'000;
 
+constexpr double kSlack = 1e-6;  ///< metres: corners that were turned are not exactly where they were
+
 tl::unexpected<Error> locked_by(const Lease& lease) {
   return refuse(Code::kLocked, lease.author + " works there; ask them, or again in some seconds");
 }
@@ -27,7 +29,17 @@ Result<Lease> Leases::check(const LeaseRequest& request, const Transform& T_map_
   if (same == held_.end() && there >= static_cast<std::ptrdiff_t>(kMaxLeases)) {
     return refuse(Code::kBusy, "all " + std::to_string(kMaxLeases) + " leases are held; ask again in some seconds");
   }
-  const auto free = check(bounds_in_map(request.volume, T_map_frame), request.author, now);
+  const auto own = std::ranges::count_if(held_, [&](const auto& entry) {
+    return entry.first != request.id && entry.second.lease.author == request.author && entry.second.lease.until > now;
+  });
+  if (own >= kMaxLeasesOfOne) {
+    return refuse(Code::kTooLarge, "one person may hold " + std::to_string(kMaxLeasesOfOne) + " leases; free one");
+  }
+  const Eigen::AlignedBox3d bounds = bounds_in_map(request.volume, T_map_frame);
+  if (!(bounds.sizes().maxCoeff() <= kMaxLeaseSide + kSlack)) {
+    return refuse(Code::kTooLarge, "a lease reaches at most 20 m along each axis of the map; hold several");
+  }
+  const auto free = check(bounds, request.author, now);
   if (!free) return tl::unexpected(free.error());
   return Lease{request.id, request.author, request.volume, T_map_frame, now + kLeaseTime};
 }

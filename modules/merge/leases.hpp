@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -17,13 +18,18 @@ namespace concord {
 /// From each hold: longer than a person's network hiccup, short enough that who vanished does not lock others out.
 inline constexpr std::int64_t kLeaseTime = 10'000'000;
 
+/// Of a lease along each of the map's axes, metres: who needs more holds several.
+inline constexpr double kMaxLeaseSide = 20.0;
+inline constexpr std::ptrdiff_t kMaxLeasesOfOne = 4;
+
 /// Who works where. Not kept over a restart: a holder renews every few seconds, which takes the lease anew.
 class Leases {
  public:
   explicit Leases(double resolution) : resolution_(resolution) {}
 
   /// What a hold leads to. Refused: an overlap with another author's lease, by bounding boxes, or an id that is another
-  /// author's (kLocked); all kMaxLeases taken (kBusy). Those that are over at `now` do not count.
+  /// author's (kLocked); all kMaxLeases taken (kBusy); over kMaxLeaseSide, or kMaxLeasesOfOne of the author
+  /// (kTooLarge). Those that are over at `now` do not count.
   [[nodiscard]] Result<Lease> check(const LeaseRequest& request, const Transform& T_map_frame, std::int64_t now) const;
   /// @pre check gave it.
   void hold(Lease lease);

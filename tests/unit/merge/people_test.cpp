@@ -132,7 +132,7 @@ TEST_F(PeopleTest, AnEditOnWhatOthersChangedSinceIsStale) {
   late.id = "c";
   late.shape = voxel({0, 0, 1});
   late.base_revision = 0;
-  EXPECT_EQ(edit(late), kOk) << "others changed other voxels";
+  EXPECT_EQ(edit(late), kOk) << "other voxels were changed";
   ASSERT_EQ(undo("u", "eva", "a"), kOk);
   late.id = "d";
   late.shape = voxel({0, 0, 0});
@@ -187,7 +187,7 @@ TEST_F(PeopleTest, ThinTurnedLeasesKeepOutOfJustThemselves) {
 
 TEST_F(PeopleTest, WhatIsDearToTellIsLocked) {
   // A comb whose teeth miss all centres: every voxel is near, none is in it.
-  Prism comb{{}, -100, 100};
+  Prism comb{{}, -10, 10};
   for (int i = 0; i < 15; ++i) {
     comb.points.emplace_back(i * 0.6, 0.0);
     comb.points.emplace_back(i * 0.6, 9.0);
@@ -204,13 +204,22 @@ TEST_F(PeopleTest, WhatIsDearToTellIsLocked) {
   EXPECT_EQ(edit(large), Code::kLocked);
 }
 
+TEST_F(PeopleTest, NobodyHoldsAllOrEverything) {
+  EXPECT_EQ(hold("l", "eva", box(0, 20.1)), Code::kTooLarge);
+  for (int i = 0; i < 4; ++i) ASSERT_EQ(hold("l" + std::to_string(i), "eva", box(0, 20)), kOk);
+  EXPECT_EQ(hold("l4", "eva", box(0, 1)), Code::kTooLarge);
+  EXPECT_EQ(hold("l3", "eva", box(0, 1)), kOk) << "a renewal";
+  EXPECT_EQ(hold("t", "tom", box(30, 31)), kOk);
+}
+
 TEST_F(PeopleTest, LeasesAreBounded) {
   for (std::size_t i = 0; i < kMaxLeases; ++i) {
-    ASSERT_EQ(hold("l" + std::to_string(i), "eva", box(2.0 * static_cast<double>(i), 2.0 * static_cast<double>(i) + 1)),
+    ASSERT_EQ(hold("l" + std::to_string(i), "eva" + std::to_string(i / 4),
+                   box(2.0 * static_cast<double>(i), 2.0 * static_cast<double>(i) + 1)),
               kOk);
   }
   EXPECT_EQ(hold("more", "eva", box(-2, -1)), Code::kBusy);
-  EXPECT_EQ(hold("l0", "eva", box(-2, -1)), kOk) << "a renewal needs no room";
+  EXPECT_EQ(hold("l0", "eva0", box(-2, -1)), kOk) << "a renewal needs no room";
   now_ += kLeaseTime;
   EXPECT_EQ(hold("more", "eva", box(-2, -1)), kOk);
 }
