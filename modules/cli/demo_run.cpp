@@ -170,7 +170,7 @@ DemoRun::Step DemoRun::align(const AgentState& state) {
   const auto answer = live_->ask("in/transform", encode(request, live_->bus().now()), request.id);
   if (!answer) return tl::unexpected(answer.error());
   say(state.id + " is aligned where it is known to have started");
-  watch_->note_aligned(state.id);
+  watch_->note_aligned(state.id, agent->T_map_agent);
   return {};
 }
 

@@ -65,8 +65,12 @@ const AgentState* DemoWatch::state_of(const std::string& id) const {
   return state != agents_.end() ? &*state : nullptr;
 }
 
-void DemoWatch::note_aligned(const std::string& id) {
-  for (AgentState& state : agents_) state.aligned = state.aligned || state.id == id;
+void DemoWatch::note_aligned(const std::string& id, const Transform& T_map_agent) {
+  for (AgentState& state : agents_) {
+    if (state.id != id) continue;
+    state.aligned = true;
+    state.T_map_agent = T_map_agent;
+  }
 }
 
 std::int64_t DemoWatch::progress(const DemoAgent& agent) const {

@@ -39,7 +39,7 @@ class DemoWatch {
   [[nodiscard]] const std::vector<AgentState>& agents() const { return agents_; }
   [[nodiscard]] const AgentState* state_of(const std::string& id) const;
   /// Until merge says so itself.
-  void note_aligned(const std::string& id);
+  void note_aligned(const std::string& id, const Transform& T_map_agent);
 
   /// Percent of its way, or of its file.
   [[nodiscard]] std::int64_t progress(const DemoAgent& agent) const;

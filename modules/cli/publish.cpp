@@ -23,9 +23,9 @@ struct Options {
 };
 
 Outcome print_sent(const Common& common, const Options& options, std::int64_t known, std::int64_t bytes) {
-  common.print(
-      {{"agent", options.agent}, {"known", known}, {"bytes_sent", bytes}},
-      options.agent + ": " + format_count(known) + " voxels are with the stack, " + format_kilobytes(bytes) + " sent");
+  common.print({{"agent", options.agent}, {"known", known}, {"bytes_sent", bytes}},
+               options.agent + ": " + format_count(known) + " voxels are with the stack (on its disk within 5 s), " +
+                   format_kilobytes(bytes) + " sent");
   return Exit::kDone;
 }
 

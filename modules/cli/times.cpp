@@ -17,7 +17,8 @@ std::optional<std::int64_t> parse_ago(const std::string& text, std::int64_t now)
   if (!std::regex_match(text, match, kAgo)) return std::nullopt;
   const char unit = *match[2].first;
   const std::int64_t seconds = unit == 's' ? 1 : unit == 'm' ? 60 : unit == 'h' ? 3600 : 86'400;
-  return now - std::stoll(match[1]) * seconds * kSecond;
+  const std::int64_t count = std::stoll(match[1]), unit_utime = seconds * kSecond;
+  return count > now / unit_utime ? 0 : now - count * unit_utime;
 }
 
 int number(const std::ssub_match& match) { return match.matched ? std::stoi(match) : 0; }

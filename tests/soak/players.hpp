@@ -36,6 +36,8 @@ class Observer {
 
   /// All streams have arrived whole, and are this.
   [[nodiscard]] bool holds(const MergedMap& expected, const std::map<std::string, Zone>& zones) const;
+  /// Of the map.
+  [[nodiscard]] std::int64_t revision() const { return map_.receiver().revision(); }
   /// For a person.
   [[nodiscard]] std::string difference(const MergedMap& expected, const std::map<std::string, Zone>& zones) const;
 

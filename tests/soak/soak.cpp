@@ -1,14 +1,14 @@
 #include "soak.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 
 #include "building.hpp"
-#include "crowd.hpp"
+#include "client.hpp"
 #include "oracle.hpp"
-#include "players.hpp"
 #include "script.hpp"
 
 namespace concord::soak {
@@ -56,19 +56,22 @@ class Session {
   Session(const Plan& plan, test::Network& network)
       : plan_(plan),
         stack_(network, "resolution: " + std::to_string(kResolution) + "\n"),
-        people_(network.add("people")),
-        field_(network.add("robots")),
-        station_(people_),
-        crowd_(make_crowd()),
         script_(plan.seed),
         assassin_(stack_, plan.kills, plan.operations, plan.seed) {
-    for (const test::Host* host : {&stack_.host("ingest"), &stack_.host("merge"), &stack_.host("planner"),
-                                   static_cast<const test::Host*>(&people_), static_cast<const test::Host*>(&field_)}) {
+    test::Host& field = network.add("robots");
+    std::vector<const test::Host*> hosts = {&stack_.host("ingest"), &stack_.host("merge"), &stack_.host("planner"),
+                                            &field};
+    for (int i = 1; i <= plan.authors; ++i) {
+      hosts.push_back(&network.add("person" + std::to_string(i)));
+      clients_.push_back(
+          std::make_unique<Client>(*hosts.back(), "person " + std::to_string(i),
+                                   [this](const Request& request, const Answer& answer) { note(request, answer); }));
+    }
+    for (const test::Host* host : hosts) {
       if (plan.loss_per_mille > 0) host->lose_arriving(plan.loss_per_mille);
     }
     stack_.start_all();
-    robots_ = std::make_unique<Robots>(field_, submaps(plan.seed));
-    observer_ = std::make_unique<Observer>(people_);
+    robots_ = std::make_unique<Robots>(field, submaps(plan.seed));
   }
 
   /// Places the robots and waits until what they saw is the map: a move looks at it. Before its agents are known merge
@@ -79,7 +82,7 @@ class Session {
       const bool placed = test::eventually(buses(), [&] {
         const auto it = said_.find(id_of(request));
         const bool granted = it != said_.end() && it->second.answer->ok;
-        if (!granted && crowd_->idle()) crowd_->ask(request);
+        if (!granted && clients_.front()->idle()) clients_.front()->ask(request);
         return granted;
       });
       if (!placed) throw std::runtime_error("a robot could not be placed\n" + stack_.logs());
@@ -87,29 +90,29 @@ class Session {
     }
     if (!becomes_equal(oracle)) throw std::runtime_error(outcome_.complaints.back() + "\n" + stack_.logs());
     wait_until_on_disk();
+    outcome_.acknowledged = 0;
     outcome_.refused = 0;
     outcome_.refusals.clear();
   }
 
   void work() {
-    while (asked_ < plan_.operations || !crowd_->idle() || !assassin_.done()) {
+    const auto idle = [](const auto& client) { return client->idle(); };
+    while (asked_ < plan_.operations || !std::ranges::all_of(clients_, idle) || !assassin_.done()) {
       ask_more();
-      assassin_.act(station_.bus().now());
+      assassin_.act(now());
       for (LcmBus* bus : buses()) bus->spin_once(0);
-      station_.bus().spin_once(1);
+      robots_->bus().spin_once(1);
     }
     outcome_.kills = assassin_.kills();
   }
 
   void compare() {
     Oracle oracle(kResolution, submaps(plan_.seed));
-    std::vector<Operation> history;
-    people_.inside([&] { history = read_history(station_.bus(), station_.counters(), buses()); });
-    judge(said_, history, oracle, outcome_);
+    judge(said_, read_history(*clients_.front(), buses()), oracle, outcome_);
     outcome_.equal_oracle = becomes_equal(oracle);
     for (const char* process : {"merge", "ingest", "planner"}) stack_.kill(process);
     stack_.start_all();
-    observer_ = std::make_unique<Observer>(people_);
+    for (const auto& client : clients_) client->look_anew();
     outcome_.equal_oracle = becomes_equal(oracle) && outcome_.equal_oracle;
     if (!outcome_.good()) outcome_.complaints.push_back(stack_.logs());
   }
@@ -117,29 +120,23 @@ class Session {
   [[nodiscard]] Outcome& outcome() { return outcome_; }
 
  private:
+  [[nodiscard]] std::int64_t now() const { return clients_.front()->station().bus().now(); }
+
   /// Ingest may lose what it received in the last seconds, for robots to send again; here the submaps stand still.
   void wait_until_on_disk() {
-    const auto from = station_.bus().now();
+    const std::int64_t from = now();
     const auto done = std::make_shared<bool>(false);
-    people_.inside([&] {
+    Client& client = *clients_.front();
+    client.host().inside([&] {
       listen<ProcessStatus>(
-          station_.bus(), station_.counters(), "soak", "out/status/ingest",
-          [done, from](const std::string&, const ProcessStatus& status) {
+          client.station().bus(), client.station().counters(), "soak", "out/status/ingest",
+          [done = done.get(), from](const std::string&, const ProcessStatus& status) {
             const auto count = status.counters.find("agents_to_write");
             if (status.utime > from && count != status.counters.end() && count->second == 0) *done = true;
           },
           done);
     });
     if (!test::eventually(buses(), [&] { return *done; })) throw std::runtime_error("ingest did not write the submaps");
-  }
-
-  std::unique_ptr<Crowd> make_crowd() {
-    std::unique_ptr<Crowd> crowd;
-    people_.inside([&] {
-      crowd = std::make_unique<Crowd>(station_.bus(), station_.counters(),
-                                      [this](const Request& request, const Answer& answer) { note(request, answer); });
-    });
-    return crowd;
   }
 
   void note(const Request& request, const Answer& answer) {
@@ -154,41 +151,45 @@ class Session {
   }
 
   void ask_more() {
-    for (int i = 1; i <= plan_.authors && asked_ < plan_.operations; ++i) {
-      const std::string author = "person " + std::to_string(i);
-      if (crowd_->waits(author)) continue;
-      const Request request = script_.next(author);
+    for (const auto& client : clients_) {
+      if (!client->idle() || asked_ == plan_.operations) continue;
+      const Request request = script_.next(client->author());
       said_[id_of(request)] = {request, std::nullopt};
-      crowd_->ask(request);
-      assassin_.on_request(++asked_, station_.bus().now());
+      client->ask(request);
+      assassin_.on_request(++asked_, now());
     }
   }
 
   [[nodiscard]] std::vector<LcmBus*> buses() {
-    std::vector<LcmBus*> all = observer_->buses();
-    all.push_back(&robots_->bus());
-    all.push_back(&station_.bus());
+    std::vector<LcmBus*> all = {&robots_->bus()};
+    for (const auto& client : clients_) {
+      for (LcmBus* bus : client->buses()) all.push_back(bus);
+    }
     return all;
   }
 
+  /// Everybody ends with the same: the oracle's map, conflicts and zones, and one revision.
   [[nodiscard]] bool becomes_equal(const Oracle& oracle) {
     const MergedMap expected = oracle.map();
-    const bool equal = test::eventually(buses(), [&] { return observer_->holds(expected, oracle.zones()); });
-    if (!equal) outcome_.complaints.push_back(observer_->difference(expected, oracle.zones()));
-    return equal;
+    const auto agrees = [&](const auto& client) {
+      return client->sees().holds(expected, oracle.zones()) &&
+             client->sees().revision() == clients_.front()->sees().revision();
+    };
+    if (test::eventually(buses(), [&] { return std::ranges::all_of(clients_, agrees); })) return true;
+    for (const auto& client : clients_) {
+      if (!agrees(client))
+        outcome_.complaints.push_back(client->author() + ": " + client->sees().difference(expected, oracle.zones()));
+    }
+    return false;
   }
 
   Plan plan_;
   Outcome outcome_;
   test::Stack stack_;
-  test::Host& people_;
-  test::Host& field_;
-  test::Station station_;
-  std::unique_ptr<Crowd> crowd_;
   Script script_;
   Assassin assassin_;
   std::unique_ptr<Robots> robots_;
-  std::unique_ptr<Observer> observer_;
+  std::vector<std::unique_ptr<Client>> clients_;
   std::map<std::string, Said> said_;  ///< by request id
   int asked_ = 0;
 };

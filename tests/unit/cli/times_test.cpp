@@ -54,6 +54,7 @@ TEST_F(Times, RefusesWhatNoCalendarOrClockShows) {
   }
   EXPECT_EQ(parse_time(std::string(100'000, '1'), kNow).error().code, Code::kMalformed);
   EXPECT_EQ(parse_time("999999d", kNow).error().code, Code::kBadRequest);
+  EXPECT_EQ(parse_time("999999999d", kNow).error().code, Code::kBadRequest) << "beyond what microseconds can count";
   EXPECT_EQ(parse_time("1969-12-31T00:00Z", kNow).error().code, Code::kBadRequest);
 }
 

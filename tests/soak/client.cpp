@@ -1,10 +1,8 @@
-#include "crowd.hpp"
+#include "client.hpp"
 
-#include <algorithm>
 #include <cassert>
+#include <map>
 #include <stdexcept>
-
-#include "station.hpp"
 
 namespace concord::soak {
 namespace {
@@ -37,47 +35,57 @@ struct Page {
 
 }  // namespace
 
-Crowd::Crowd(LcmBus& bus, Counters& counters, Answered answered) : bus_(bus), answered_(std::move(answered)) {
-  listen<Answer>(bus_, counters, "soak", kAnswers, [this](const std::string&, const Answer& a) { on_answer(a); });
-  bus_.every(kCheck, [this] {
-    for (auto& [id, waiting] : waiting_) {
-      if (bus_.now() >= waiting.repeat_at) say(waiting);
-    }
+Client::Client(const test::Host& host, std::string author, Answered answered)
+    : host_(host),
+      author_(std::move(author)),
+      answered_(std::move(answered)),
+      station_(host),
+      observer_(std::make_unique<Observer>(host)) {
+  host.inside([this] {
+    listen<Answer>(station_.bus(), station_.counters(), "soak", kAnswers,
+                   [this](const std::string&, const Answer& answer) { on_answer(answer); });
+  });
+  station_.bus().every(kCheck, [this] {
+    if (waiting_ && station_.bus().now() >= repeat_at_) say();
   });
 }
 
-void Crowd::ask(const Request& request) {
-  const auto [it, is_new] = waiting_.try_emplace(id_of(request), Waiting{request});
-  assert(is_new);
-  say(it->second);
+void Client::ask(const Request& request) {
+  assert(idle());
+  waiting_ = request;
+  say();
 }
 
-bool Crowd::waits(const std::string& author) const {
-  return std::ranges::any_of(waiting_, [&](const auto& entry) { return author_of(entry.second.request) == author; });
+std::vector<LcmBus*> Client::buses() {
+  std::vector<LcmBus*> all = observer_->buses();
+  all.push_back(&station_.bus());
+  return all;
 }
 
-void Crowd::say(Waiting& waiting) {
-  publish(bus_, waiting.request);
-  waiting.repeat_at = bus_.now() + kRepeat;
+void Client::say() {
+  publish(station_.bus(), *waiting_);
+  repeat_at_ = station_.bus().now() + kRepeat;
 }
 
-void Crowd::on_answer(const Answer& answer) {
-  const auto it = waiting_.find(answer.id);
-  if (it == waiting_.end() || answer.code == name(Code::kBusy)) return;
-  const Request request = it->second.request;
-  waiting_.erase(it);
+void Client::on_answer(const Answer& answer) {
+  if (!waiting_ || answer.id != id_of(*waiting_) || answer.code == name(Code::kBusy)) return;
+  const Request request = *std::exchange(waiting_, std::nullopt);
   answered_(request, answer);
 }
 
-std::vector<Operation> read_history(LcmBus& bus, Counters& counters, const std::vector<LcmBus*>& others) {
-  Page page;
-  listen<HistoryPart>(bus, counters, "soak", "out/history", [&page](const std::string&, const HistoryPart& part) {
-    if (part.id != page.id) return;
-    page.parts[part.part] = part.operations;
-    page.count = part.parts;
+std::vector<Operation> read_history(Client& client, const std::vector<LcmBus*>& buses) {
+  LcmBus& bus = client.station().bus();
+  const auto page = std::make_shared<Page>();
+  client.host().inside([&] {
+    listen<HistoryPart>(
+        bus, client.station().counters(), "soak", "out/history",
+        [page = page.get()](const std::string&, const HistoryPart& part) {
+          if (part.id != page->id) return;
+          page->parts[part.part] = part.operations;
+          page->count = part.parts;
+        },
+        page);
   });
-  std::vector<LcmBus*> buses = others;
-  buses.push_back(&bus);
   std::vector<Operation> out;
   for (int number = 0;; ++number) {
     constexpr int kMost = 500;
@@ -85,18 +93,18 @@ std::vector<Operation> read_history(LcmBus& bus, Counters& counters, const std::
     request.id = "history-" + std::to_string(bus.now()) + "-" + std::to_string(number);
     request.after_revision = out.empty() ? 0 : out.back().revision;
     request.most = kMost;
-    page = {request.id, {}, -1};
+    *page = {request.id, {}, -1};
     std::int64_t ask_at = 0;
     const bool arrived = test::eventually(buses, [&] {
       if (bus.now() >= ask_at) {
         bus.publish("in/history_request", encode(request, bus.now()));
         ask_at = bus.now() + kRepeat;
       }
-      return page.whole();
+      return page->whole();
     });
     if (!arrived) throw std::runtime_error("the history did not arrive within a minute");
     std::size_t found = 0;
-    for (const auto& [number_of_part, operations] : page.parts) {
+    for (const auto& [number_of_part, operations] : page->parts) {
       found += operations.size();
       out.insert(out.end(), operations.begin(), operations.end());
     }
