@@ -296,8 +296,8 @@ TEST(MapArchive, EditsThatWouldFillTheMemoryAreRefused) {
                                 })
                        .end());
   };
-  EXPECT_EQ(with({0, 0, 0}, {49, 99, 99}, 1), "OK") << "as many as one edit pins";
-  EXPECT_EQ(with({0, 0, 0}, {50, 99, 99}, 1), "TOO_LARGE");
+  EXPECT_EQ(with({0, 0, 0}, {99, 99, 99}, 1), "OK") << "as many as an edit of the first release pinned";
+  EXPECT_EQ(with({0, 0, 0}, {100, 99, 99}, 1), "TOO_LARGE");
   EXPECT_EQ(with({-32768, -32768, -32768}, {32767, 32767, 32767}, 1), "TOO_LARGE");
   EXPECT_EQ(with({0, 0, 0}, {1, 1, 1}, 0xFFFFFFFF), "MALFORMED") << "more boxes than bytes";
   EXPECT_EQ(with({1, 0, 0}, {0, 0, 0}, 1), "MALFORMED") << "inside out";
