@@ -65,6 +65,7 @@ class AgentsNode {
 
   void listen();
   Agent* agent_called(const std::string& id, const std::string& channel);
+  [[nodiscard]] bool has_room();
   BrickReceiver* stream_of_channel(const std::string& channel);
   void open_stream(const std::string& id, Agent& agent);
   void enter_frame(const std::string& id, Agent& agent, const std::string& frame_id);

@@ -104,11 +104,15 @@ PinnedBricks KeptPins::expanded() const {
 }
 
 Result<void> EditLayer::check(const PinnedBricks& bricks) const {
-  if (count_of(bricks) > kMaxPins - pin_count_) {
+  return check_room(count_of(bricks), static_cast<std::int64_t>(bricks.size()));
+}
+
+Result<void> EditLayer::check_room(std::int64_t pins, std::int64_t bricks) const {
+  if (pins > kMaxPins - pin_count_) {
     return refuse(Code::kTooLarge, "all edits together, undone ones too, may pin " + std::to_string(kMaxPins) +
                                        " voxels; save the map and begin with a new state folder");
   }
-  if (static_cast<std::int64_t>(bricks.size()) > kMaxPinnedBricks - brick_count_) {
+  if (bricks > kMaxPinnedBricks - brick_count_) {
     return refuse(Code::kTooLarge, "all edits together, undone ones too, may lie in " +
                                        std::to_string(kMaxPinnedBricks) +
                                        " bricks of 8 voxels; save the map and begin with a new state folder");

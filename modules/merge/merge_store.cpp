@@ -32,10 +32,6 @@ std::optional<Kind> kind_of(std::string_view text) {
   return std::nullopt;
 }
 
-tl::unexpected<Error> damaged(const std::string& what) {
-  return refuse(Code::kIo, "merge.db: " + what + "; move the file away and bring back a backup");
-}
-
 Bytes to_bytes(const std::vector<VoxelIndex>& voxels) {
   Bytes out;
   for (const VoxelBox& box : to_boxes(voxels)) {
@@ -60,6 +56,10 @@ Result<std::vector<VoxelIndex>> voxels_of(ByteSpan bytes) {
 }
 
 }  // namespace
+
+tl::unexpected<Error> damaged(const std::string& what) {
+  return refuse(Code::kIo, "merge.db: " + what + "; move the file away and bring back a backup");
+}
 
 MergeStore::MergeStore(const std::filesystem::path& file, double resolution)
     : database_(file, kMergeSchema),
@@ -217,7 +217,7 @@ struct MergeStore::Readers {
   Statement edit, zone, placement, weight;
 };
 
-Result<void> MergeStore::for_each(const std::function<void(Correction)>& visit, std::int64_t after) {
+Result<void> MergeStore::for_each(const std::function<Result<void>(Correction)>& visit, std::int64_t after) {
   Readers readers(database_);
   Statement rows = database_.prepare(
       "SELECT revision, id, author, utime, kind, subject, content FROM corrections WHERE revision > ? ORDER BY "
@@ -233,7 +233,7 @@ Result<void> MergeStore::for_each(const std::function<void(Correction)>& visit, 
     const auto kind = kind_of(rows.text(4));
     if (!kind) return damaged("a kind of correction called " + rows.text(4));
     if (const auto read = readers.read(*kind, rows.text(5), correction); !read) return read;
-    visit(std::move(correction));
+    if (const auto visited = visit(std::move(correction)); !visited) return visited;
   }
 }
 

@@ -1,9 +1,29 @@
+#include <stdexcept>
+
+#include "merge/merge_schema.hpp"
 #include "people_station.hpp"
+#include "store/database.hpp"
 
 namespace concord {
 namespace {
 
 class PeopleNodeTest : public PeopleStation {};
+
+TEST_F(PeopleNodeTest, AStoreThatNobodyCouldHaveWrittenIsToldAtTheStart) {
+  ASSERT_TRUE(add("e1", {1, 1, 1}).ok);
+  ASSERT_TRUE(undo("u1", "e1").ok);
+  node_.reset();
+  {
+    Database store(site_.state / "merge.db", kMergeSchema);
+    ASSERT_TRUE(store.prepare("UPDATE corrections SET subject = 'nobody' WHERE id = 'u1'").run());
+  }
+  try {
+    start();
+    FAIL() << "it started";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("bring back a backup"), std::string::npos) << error.what();
+  }
+}
 
 TEST_F(PeopleNodeTest, UndoShowsWhatTheSensorsSay) {
   send_wall();
