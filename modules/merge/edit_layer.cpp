@@ -170,7 +170,8 @@ void EditLayer::refresh(BrickIndex index, const History& history, BrickSet& touc
 
 bool EditLayer::changed_since(const PinnedBricks& bricks, std::int64_t base) const {
   return std::ranges::any_of(bricks, [&](const auto& entry) {
-    const auto& [index, pins] = entry;
+    const BrickIndex index = entry.first;
+    const PinBrick& pins = entry.second;  // clang 14 captures no structured binding
     const auto it = by_brick_.find(index);
     if (it == by_brick_.end() || it->second.last_revision <= base) return false;
     return std::ranges::any_of(it->second.edits, [&](std::uint32_t edit) {

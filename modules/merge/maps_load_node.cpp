@@ -54,7 +54,8 @@ Result<void> MapsNode::open(const MapRequest& request, std::uint64_t content) {
     options.keep_bricks = false;
     auto archive = read_map_archive(*file, options);
     if (!archive) return tl::unexpected(archive.error());
-    Opened& opened = opened_.emplace();
+    opened_ = Opened{};
+    Opened& opened = *opened_;
     opened.request_id = request.id;
     opened.content = content;
     opened.version = *version;

@@ -127,7 +127,7 @@ TEST_F(StackSystemTest, the_map_outlives_its_agents_and_every_process) {
   EXPECT_TRUE(map_becomes(before));
 }
 
-TEST_F(StackSystemTest, an_edit_is_in_the_map_and_survives_a_power_cut_of_merge) {
+TEST_F(StackSystemTest, an_edit_is_in_the_map_and_survives_the_killing_of_merge) {
   stack_->start_all();
   listen_to_map(*person_);
   add_robot(network().add("robot1"), noisy_map(8, 5));
