@@ -218,16 +218,21 @@ int AgentsNode::weight_of(const std::string& id) const {
   return people_.weight(id).value_or(context_.site.agent(id).weight);
 }
 
+bool AgentsNode::all_heard() const {
+  return ingest_heard_ && context_.bus.now() - *ingest_heard_ >= kAllHeard;
+}
+
 bool AgentsNode::has_all_that_was_aligned() const {
   const bool all = std::ranges::all_of(awaited_, [&](const std::string& id) {
     const auto it = agents_.find(id);
-    return it != agents_.end() && it->second.stream && it->second.stream->synced();
+    const bool is_there = it != agents_.end() && it->second.stream;
+    return is_there ? it->second.stream->synced() : all_heard();
   });
   return all || context_.bus.now() - last_arrival_ >= kLongestWait;
 }
 
 Result<void> AgentsNode::all_whole() const {
-  if (!ingest_heard_ || context_.bus.now() - *ingest_heard_ < kAllHeard) {
+  if (!all_heard()) {
     return refuse(Code::kBusy,
                   "ingest has not been heard for 3 s since merge began, so some layers may be missing; "
                   "does it run? ask again in some seconds");
