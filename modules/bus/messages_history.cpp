@@ -49,9 +49,10 @@ Result<std::optional<Kind>> any_kind_of(std::int8_t kind) {
   return kind_of(kind).map([](Kind known) { return std::optional<Kind>(known); });
 }
 
-Result<std::string> printable(const std::string& text, const char* what) {
-  if (wire::is_printable(text)) return text;
-  return refuse(Code::kBadRequest, std::string(what) + " must be at most 80 printable characters");
+/// Also of what is asked for: it may have been made when more was taken for a name than is now.
+Result<std::string> line(const std::string& text, const char* what) {
+  if (is_line(text)) return text;
+  return refuse(Code::kBadRequest, std::string(what) + " must be one line of at most 80 bytes");
 }
 
 Result<int> most_of(std::int32_t most, int highest) {
@@ -94,11 +95,11 @@ operation_t to_wire(const Operation& operation) {
 Decoded<Operation> from_wire(const operation_t& in) {
   wire::Filling<Operation> out({}, {});
   out.take(&Operation::revision, wire::not_negative(in.revision, "revision"));
-  out.take(&Operation::id, printable(in.id, "id"));
-  out.take(&Operation::author, printable(in.author, "author"));
+  out.take(&Operation::id, line(in.id, "id"));
+  out.take(&Operation::author, line(in.author, "author"));
   out.take(&Operation::utime, Result<std::int64_t>(in.utime));
   out.take(&Operation::kind, kind_of(in.kind));
-  out.take(&Operation::subject, printable(in.subject, "subject"));
+  out.take(&Operation::subject, line(in.subject, "subject"));
   out.take(&Operation::count, wire::not_negative(in.count, "count"));
   out.take(&Operation::active, Result<bool>(in.active != 0));
   out.require(check_bounds(in));
@@ -127,7 +128,7 @@ Decoded<ConflictRegion> from_wire(const conflict_region_t& in) {
     return bad(Code::kMalformed, "a tile of the map has fewer voxels than this region");
   ConflictRegion out{voxel(in.min), voxel(in.max), in.voxels, {}};
   for (const claim_t& claim : in.claims) {
-    if (!is_name(claim.agent)) return bad(Code::kBadName, wire::kBadAgent);
+    if (const auto agent = wire::agent_of(claim.agent); !agent) return bad(agent.error());
     const auto within = [&](std::int32_t voxels) { return voxels >= 0 && voxels <= in.voxels; };
     if (!within(claim.occupied) || !within(claim.free)) {
       return bad(Code::kMalformed, "an agent claims more voxels than there are");
@@ -211,13 +212,12 @@ template <>
 Decoded<HistoryRequest> decode<HistoryRequest>(std::span<const std::uint8_t> bytes) {
   static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength), text(wire::kIdLength), text(wire::kIdLength),
                                           fixed(1 + 8 + 8 + 8 + 4)};
-  const auto in = wire::from_bytes<history_request_t>(bytes, kLayout);
-  if (!in) return bad(in.error());
-  if (!wire::is_request_id(in->request_id)) return wire::bad_id();
+  const auto in = wire::request_from_bytes<history_request_t>(bytes, kLayout);
+  if (!in) return tl::unexpected(in.error());
   wire::Filling<HistoryRequest> out({}, in->request_id);
   out.take(&HistoryRequest::id, Result<std::string>(in->request_id));
-  out.take(&HistoryRequest::author, printable(in->author, "author"));
-  out.take(&HistoryRequest::subject, printable(in->subject, "subject"));
+  out.take(&HistoryRequest::author, line(in->author, "author"));
+  out.take(&HistoryRequest::subject, line(in->subject, "subject"));
   out.take(&HistoryRequest::kind, any_kind_of(in->kind));
   out.take(&HistoryRequest::since, wire::not_negative(in->since, "since"));
   out.take(&HistoryRequest::until, wire::not_negative(in->until, "until"));
@@ -252,9 +252,8 @@ Bytes encode(const ConflictRequest& value, std::int64_t utime) {
 template <>
 Decoded<ConflictRequest> decode<ConflictRequest>(std::span<const std::uint8_t> bytes) {
   static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength), fixed(4)};
-  const auto in = wire::from_bytes<conflict_request_t>(bytes, kLayout);
-  if (!in) return bad(in.error());
-  if (!wire::is_request_id(in->request_id)) return wire::bad_id();
+  const auto in = wire::request_from_bytes<conflict_request_t>(bytes, kLayout);
+  if (!in) return tl::unexpected(in.error());
   wire::Filling<ConflictRequest> out({in->request_id, 1}, in->request_id);
   out.take(&ConflictRequest::most, most_of(in->most, kMostRegions));
   return out.done();

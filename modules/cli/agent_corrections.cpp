@@ -26,7 +26,7 @@ Outcome set_weight(const Weighing& weighing, const Common& common) {
   Live live(common);
   const WeightRequest request{live.id_or_new(weighing.id), author_or_user(weighing.author), weighing.agent,
                               weighing.weight, live.bus().now()};
-  return print_revision(live.ask("in/weight", encode(request), request.id), common);
+  return print_revision(live.ask("in/weight", request), common);
 }
 
 Result<std::int64_t> parse_utime(const std::string& text, std::int64_t now) {
@@ -53,7 +53,7 @@ Outcome localise(const Sighting& sighting, const Common& common) {
                                 *T_frame_base,
                                 sighting.frame,
                                 *utime};
-  return print_revision(live.ask("in/localise", encode(request), request.id), common);
+  return print_revision(live.ask("in/localise", request), common);
 }
 
 }  // namespace

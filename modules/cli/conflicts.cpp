@@ -17,8 +17,8 @@ std::string to_words(const ConflictRegion::Claim& claim) {
 Outcome conflicts(int most, const Common& common) {
   Live live(common);
   const ConflictRequest request{live.new_id(), most};
-  const Question question{"in/conflict_request", encode(request, live.bus().now()), request.id, "merge"};
-  const auto parts = ask_in_parts<ConflictList>(live, question, "out/conflict_list");
+  const auto parts =
+      ask_in_parts<ConflictList>(live, Desk{"in/conflict_request", "merge", "out/conflict_list"}, request);
   if (!parts) return tl::unexpected(parts.error());
   common.print(to_json(*parts, live.site().resolution), to_words(*parts, live.site().resolution));
   return Exit::kDone;

@@ -88,7 +88,7 @@ Outcome edit(const Options& options, const Common& common) {
   request.move = *move;
   request.base_revision = options.base_revision;
   request.utime = live.bus().now();
-  const auto answer = live.ask("in/edit", encode(request), request.id);
+  const auto answer = live.ask("in/edit", request);
   if (!answer) return tl::unexpected(answer.error());
   print_edit(*answer, request_made(live, *answer), live.site().resolution, common);
   return Exit::kDone;
@@ -100,7 +100,7 @@ Outcome undo(const UndoOptions& options, bool redo, const Common& common) {
   Live live(common);
   const UndoRequest request{live.id_or_new(options.id), author_or_user(options.author), options.edit, redo,
                             live.bus().now()};
-  return print_revision(live.ask("in/undo", encode(request), request.id), common);
+  return print_revision(live.ask("in/undo", request), common);
 }
 
 void add_undo(Program& program, const std::string& name, const std::string& what, bool redo) {

@@ -53,8 +53,7 @@ tl::expected<std::vector<Operation>, Failure> request_history(Live& live, Histor
     if (page == 0) return all;
     request.id = live.new_id();
     request.most = static_cast<int>(page);
-    const Question question{"in/history_request", encode(request, live.bus().now()), request.id, "merge"};
-    const auto parts = ask_in_parts<HistoryPart>(live, question, "out/history");
+    const auto parts = ask_in_parts<HistoryPart>(live, Desk{"in/history_request", "merge", "out/history"}, request);
     if (!parts) return tl::unexpected(parts.error());
     const std::size_t before = all.size();
     for (const HistoryPart& part : *parts) {

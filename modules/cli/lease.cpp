@@ -28,7 +28,7 @@ struct Options {
 
 tl::expected<Answer, Failure> ask(Live& live, LeaseRequest& request) {
   request.utime = live.bus().now();
-  return live.ask("in/lease", encode(request), request.id);
+  return live.ask("in/lease", request);
 }
 
 /// Also when a person has ended the program, which no other wait outlasts. Returns whether merge has heard it.

@@ -17,6 +17,20 @@ namespace concord {
 /// Until then a request is sent again and again: datagrams get lost, and the stack does what it is asked once per id.
 inline constexpr std::int64_t kAskAgain = 300'000;
 
+/// A request as it goes out; or what the stack would refuse it for unread, by the same limits.
+template <class Request>
+[[nodiscard]] tl::expected<Bytes, Failure> to_send(const Request& request, std::int64_t now) {
+  Bytes bytes = [&] {
+    if constexpr (requires { encode(request); }) {
+      return encode(request);
+    } else {
+      return encode(request, now);
+    }
+  }();
+  if (const auto read = decode<Request>(bytes); !read) return fail(read.error().error);
+  return bytes;
+}
+
 /// The running stack, as a client sees it.
 class Live {
  public:
@@ -50,8 +64,12 @@ class Live {
 
   /// Asks and waits for the next answer to `id`; who is busy is asked again. Fails with what the stack refused it for,
   /// or kNoAnswer.
-  [[nodiscard]] tl::expected<Answer, Failure> ask(const std::string& channel, const Bytes& request,
-                                                  const std::string& id);
+  template <class Request>
+  [[nodiscard]] tl::expected<Answer, Failure> ask(const std::string& channel, const Request& request) {
+    return to_send(request, bus_.now()).and_then([&](const Bytes& bytes) {
+      return ask_bytes(channel, bytes, request.id);
+    });
+  }
   /// The answer to one of our ids, once it has come; of this process, where several answer.
   [[nodiscard]] const Answer* answer_to(const std::string& id) const;
   [[nodiscard]] const Answer* answer_to(const std::string& id, const std::string& process) const;
@@ -61,6 +79,9 @@ class Live {
   [[nodiscard]] tl::unexpected<Failure> no_answer(const std::string& who) const;
 
  private:
+  [[nodiscard]] tl::expected<Answer, Failure> ask_bytes(const std::string& channel, const Bytes& request,
+                                                        const std::string& id);
+
   Site site_;
   double timeout_;
   Counters counters_;

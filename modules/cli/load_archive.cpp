@@ -45,7 +45,8 @@ Outcome load_archive(Live& live, const MapRequest& request, const Common& common
   }
   const auto ingest = [&] { return live.answer_to(request.id, "ingest"); };
   const auto merge = [&] { return live.answer_to(request.id, "merge"); };
-  const Bytes message = encode(request, live.bus().now());
+  const auto message = to_send(request, live.bus().now());
+  if (!message) return tl::unexpected(message.error());
   const auto held = watch_layers(live);
   std::int64_t due = 0;
   live.wait_while_moving(
@@ -53,7 +54,7 @@ Outcome load_archive(Live& live, const MapRequest& request, const Common& common
       [&] {
         if (is_refusal(ingest()) || is_refusal(merge()) || (is_done(ingest()) && is_done(merge()))) return true;
         if (live.bus().now() >= due) {
-          live.bus().publish("in/map_request", message);
+          live.bus().publish("in/map_request", *message);
           due = live.bus().now() + kAskToLoadAgain;
         }
         return false;

@@ -26,7 +26,7 @@ Outcome set_transform(const Alignment& alignment, const Common& common) {
   Live live(common);
   const TransformRequest request{live.new_id(), author_or_user(alignment.author), alignment.agent, alignment.frame,
                                  *T_map_agent};
-  return print_revision(live.ask("in/transform", encode(request, live.bus().now()), request.id), common);
+  return print_revision(live.ask("in/transform", request), common);
 }
 
 Outcome send_to(const Goal& goal, const Common& common) {
@@ -46,7 +46,7 @@ void add_agent_request(Program& program, const std::string& name, const std::str
              if (!is_name(*agent)) return bad_name(*agent);
              Live live(common);
              const AgentRequest request{live.new_id(), *agent, op};
-             return print_answer(live.ask("in/agent_request", encode(request, live.bus().now()), request.id), common);
+             return print_answer(live.ask("in/agent_request", request), common);
            })
       .add_option("agent", *agent, "the agent's id")
       ->required();

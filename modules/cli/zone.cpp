@@ -53,7 +53,7 @@ Outcome zone(const Options& options, const Common& common) {
   request.frame = options.selection.frame;
   request.base_revision = options.base_revision;
   request.utime = live.bus().now();
-  return print_revision(live.ask("in/zone", encode(request), request.id), common);
+  return print_revision(live.ask("in/zone", request), common);
 }
 
 Outcome zones(const Common& common) {

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "core/text.hpp"
-
 namespace concord {
 namespace {
 
@@ -61,11 +59,6 @@ Operation summary(const Correction& correction, bool active) {
   out.active = active;
   std::visit(Summarise{out}, correction.what);
   return out;
-}
-
-bool is_title(std::string_view text) {
-  return !text.empty() && text.size() <= 80 && text.front() != ' ' && text.back() != ' ' &&
-         text.find_first_of("/\\") == text.npos && is_printable(text);
 }
 
 }  // namespace concord

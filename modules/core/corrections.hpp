@@ -3,12 +3,12 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <variant>
 #include <vector>
 
 #include "core/lattice.hpp"
 #include "core/shape.hpp"
+#include "core/text.hpp"
 #include "core/transform.hpp"
 
 namespace concord {
@@ -211,8 +211,5 @@ struct ConflictRegion {
   int voxels = 0;
   std::vector<Claim> claims;  ///< of agents that know any of them, in the order of their ids
 };
-
-/// Titles are for people: 1 to 80 bytes of printable UTF-8 without slashes, not beginning or ending with a space.
-[[nodiscard]] bool is_title(std::string_view text);
 
 }  // namespace concord

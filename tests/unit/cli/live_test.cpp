@@ -38,7 +38,7 @@ TEST_F(LiveTest, AsksAgainUntilItIsAnswered) {
   live.hear<TransformRequest>("in/transform", [&](const std::string&, const TransformRequest& asked) {
     if (++heard == 3) answer(live.bus(), {asked.id, "merge", true, "OK", "placed", 7, 0});
   });
-  const auto answered = live.ask("in/transform", encode(mine, 0), mine.id);
+  const auto answered = live.ask("in/transform", mine);
   ASSERT_TRUE(answered);
   EXPECT_EQ(heard, 3);
   EXPECT_EQ(answered->revision, 7);
@@ -50,7 +50,7 @@ TEST_F(LiveTest, ARefusalIsThreeAndCarriesTheReason) {
   live.hear<TransformRequest>("in/transform", [&](const std::string&, const TransformRequest& asked) {
     answer(live.bus(), {asked.id, "merge", false, "NO_AGENT", "no agent robot1", 0, 0});
   });
-  const auto answered = live.ask("in/transform", encode(mine, 0), mine.id);
+  const auto answered = live.ask("in/transform", mine);
   ASSERT_FALSE(answered);
   EXPECT_EQ(answered.error().exit, Exit::kRefused);
   EXPECT_EQ(answered.error().code, "NO_AGENT");
@@ -65,7 +65,7 @@ TEST_F(LiveTest, WhoIsBusyIsAskedAgain) {
     const bool ok = ++heard == 3;
     answer(live.bus(), {asked.id, "merge", ok, ok ? "OK" : "BUSY", "not now", 0, 0});
   });
-  EXPECT_TRUE(live.ask("in/transform", encode(mine, 0), mine.id));
+  EXPECT_TRUE(live.ask("in/transform", mine));
   EXPECT_EQ(heard, 3);
 }
 
@@ -77,8 +77,8 @@ TEST_F(LiveTest, AnIdThatAPersonGaveIsHeeded) {
   live.hear<TransformRequest>("in/transform", [&](const std::string&, const TransformRequest& asked) {
     answer(live.bus(), {asked.id, "merge", true, "OK", "", ++heard, 0});
   });
-  EXPECT_EQ(live.ask("in/transform", encode(request("mine"), 0), "mine")->revision, 1);
-  EXPECT_EQ(live.ask("in/transform", encode(request("mine"), 0), "mine")->revision, 2) << "not the answer of before";
+  EXPECT_EQ(live.ask("in/transform", request("mine"))->revision, 1);
+  EXPECT_EQ(live.ask("in/transform", request("mine"))->revision, 2) << "not the answer of before";
 }
 
 TEST_F(LiveTest, AnAnswerToSomeoneElseIsNone) {
@@ -88,7 +88,7 @@ TEST_F(LiveTest, AnAnswerToSomeoneElseIsNone) {
   live.hear<TransformRequest>("in/transform", [&](const std::string&, const TransformRequest&) {
     answer(live.bus(), {"another", "merge", true, "OK", "", 0, 0});
   });
-  const auto answered = live.ask("in/transform", encode(mine, 0), mine.id);
+  const auto answered = live.ask("in/transform", mine);
   ASSERT_FALSE(answered);
   EXPECT_EQ(answered.error().exit, Exit::kNoAnswer);
 }
