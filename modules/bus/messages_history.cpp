@@ -5,6 +5,7 @@
 #include <concord/history_request_t.hpp>
 #include <concord/history_t.hpp>
 
+#include "bus/pack.hpp"
 #include "bus/translate.hpp"
 
 namespace concord {
@@ -16,31 +17,19 @@ using Kind = Operation::Kind;
 constexpr std::int64_t kMaxParts = 10'000;
 constexpr std::int64_t kMaxClaims = 1024;
 constexpr int kMostOperations = 10'000;
-constexpr int kMostRegions = 1'000;
 /// Of one tile of the map.
 constexpr std::int32_t kMaxVoxelsOfRegion = 32 * 32 * 32;
 
-constexpr std::pair<std::int8_t, Kind> kKinds[] = {
-    {operation_t::ADD, Kind::kAdd},
-    {operation_t::DELETE, Kind::kDelete},
-    {operation_t::MOVE, Kind::kMove},
-    {operation_t::UNDO, Kind::kUndo},
-    {operation_t::REDO, Kind::kRedo},
-    {operation_t::ZONE_ADD, Kind::kZoneAdd},
-    {operation_t::ZONE_CHANGE, Kind::kZoneChange},
-    {operation_t::ZONE_DELETE, Kind::kZoneDelete},
-    {operation_t::TRANSFORM, Kind::kTransform},
-    {operation_t::WEIGHT, Kind::kWeight},
-};
-
-std::int8_t to_wire(Kind kind) {
-  const auto known = std::ranges::find(kKinds, kind, &std::pair<std::int8_t, Kind>::second);
-  return known->first;
-}
+constexpr std::int8_t to_wire(Kind kind) { return static_cast<std::int8_t>(static_cast<int>(kind) + 1); }
+static_assert(to_wire(Kind::kAdd) == operation_t::ADD && to_wire(Kind::kDelete) == operation_t::DELETE &&
+              to_wire(Kind::kMove) == operation_t::MOVE && to_wire(Kind::kUndo) == operation_t::UNDO &&
+              to_wire(Kind::kRedo) == operation_t::REDO && to_wire(Kind::kZoneAdd) == operation_t::ZONE_ADD &&
+              to_wire(Kind::kZoneChange) == operation_t::ZONE_CHANGE &&
+              to_wire(Kind::kZoneDelete) == operation_t::ZONE_DELETE &&
+              to_wire(Kind::kTransform) == operation_t::TRANSFORM && to_wire(Kind::kWeight) == operation_t::WEIGHT);
 
 Result<Kind> kind_of(std::int8_t kind) {
-  const auto known = std::ranges::find(kKinds, kind, &std::pair<std::int8_t, Kind>::first);
-  if (known != std::end(kKinds)) return known->second;
+  if (kind >= 1 && kind <= static_cast<std::int8_t>(kOperationNames.size())) return static_cast<Kind>(kind - 1);
   return refuse(Code::kBadRequest, "kind is none of operation_t's");
 }
 
@@ -166,23 +155,15 @@ Decoded<Part> read_part(const Lcm& in, WireItems Lcm::*wire_items, Items Part::*
   return out;
 }
 
-/// As many items in each part as fit, in their order.
+/// At least one part.
 template <class Part, class Items>
 std::vector<Part> divide(Part whole, Items Part::*items) {
   const Items all = std::exchange(whole.*items, {});
-  std::vector<Part> parts{whole};
-  std::size_t size = 0;
-  for (const auto& item : all) {
-    const auto more = static_cast<std::size_t>(to_wire(item).getEncodedSize());
-    const bool fits = size + more <= kPartBytes && (parts.back().*items).size() < kMostInPart;
-    if (!(parts.back().*items).empty() && !fits) {
-      parts.push_back(whole);
-      size = 0;
-    }
-    (parts.back().*items).push_back(item);
-    size += more;
-  }
+  auto packed = pack(all, [](const auto& item) { return static_cast<std::size_t>(to_wire(item).getEncodedSize()); });
+  if (packed.empty()) packed.emplace_back();
+  std::vector<Part> parts(packed.size(), whole);
   for (std::size_t i = 0; i < parts.size(); ++i) {
+    parts[i].*items = std::move(packed[i]);
     parts[i].part = static_cast<std::int32_t>(i);
     parts[i].parts = static_cast<std::int32_t>(parts.size());
   }
@@ -255,7 +236,7 @@ Decoded<ConflictRequest> decode<ConflictRequest>(std::span<const std::uint8_t> b
   const auto in = wire::request_from_bytes<conflict_request_t>(bytes, kLayout);
   if (!in) return tl::unexpected(in.error());
   wire::Filling<ConflictRequest> out({in->request_id, 1}, in->request_id);
-  out.take(&ConflictRequest::most, most_of(in->most, kMostRegions));
+  out.take(&ConflictRequest::most, most_of(in->most, kMostConflictRegions));
   return out.done();
 }
 

@@ -21,6 +21,7 @@ struct DemoReport {
     const BrickMap* map = nullptr;  ///< its submap, agent's frame
     std::int64_t bytes_sent = 0;
     std::int64_t clouds_lost = 0;  ///< that ingest never got, by their numbers
+    std::optional<double> recall;  ///< share of the true surface that its submap alone shows
   };
 
   double resolution = 0.05;

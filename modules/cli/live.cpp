@@ -22,6 +22,14 @@ Live::Live(const Common& common)
   hear<Path>("out/path/.*", [this](const std::string&, Path path) {
     if (is_ours(path.id)) paths_[path.id] = std::move(path);
   });
+  hear<BrickDigest>(StreamChannels("out/map").digest,
+                    [this](const std::string&, const BrickDigest& digest) { resolution_ = digest.resolution; });
+}
+
+tl::expected<void, Failure> Live::take_resolution() {
+  if (!wait(timeout_, [this] { return resolution_.has_value(); })) return no_answer("merge");
+  site_.resolution = *resolution_;
+  return {};
 }
 
 std::string Live::new_id() { return id_prefix_ + std::to_string(++next_id_); }

@@ -42,9 +42,13 @@ class Live {
   [[nodiscard]] const Site& site() const { return site_; }
   [[nodiscard]] double timeout() const { return timeout_; }
 
+  /// Makes `site().resolution` the stack's, which may run on another site file: only then are its voxels the metres
+  /// they are taken for. The map's digest says it, each second. Fails with kNoAnswer.
+  [[nodiscard]] tl::expected<void, Failure> take_resolution();
+
   /// An id that nobody else uses.
   [[nodiscard]] std::string new_id();
-  /// `given`, whose answers are kept from now on; a new one if it is empty. @pre empty or is_name.
+  /// `given`, whose answers are kept from now on; a new one if it is empty. @pre empty or is_request_id.
   [[nodiscard]] std::string id_or_new(const std::string& given);
 
   /// Calls `take(channel, value)` with each good message; what is malformed is passed over.
@@ -90,6 +94,7 @@ class Live {
   std::int64_t next_id_ = 0;
   [[nodiscard]] bool is_ours(const std::string& id) const { return id.starts_with(id_prefix_) || given_.contains(id); }
 
+  std::optional<double> resolution_;  ///< of the map, as heard
   std::set<std::string> given_;
   std::map<std::string, std::map<std::string, Answer>> answers_;  ///< by id and process, the latest of each
   std::map<std::string, Path> paths_;

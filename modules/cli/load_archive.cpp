@@ -36,6 +36,17 @@ tl::unexpected<Failure> not_loaded(Live& live, const MapRequest& request) {
       merge->process + ": " + merge->message + "; ask again with --id " + request.id + " and a longer --timeout");
 }
 
+/// Somebody took a name of the file's between ingest's taking its layers and merge's taking what people made: the
+/// layers are there, and the rest comes once the name is free.
+tl::unexpected<Failure> refused_half_way(const Answer& answer, bool has_layers) {
+  auto failure = refused(answer);
+  if (has_layers) {
+    failure.value().message += "; its layers are loaded. Put that right, then ask again with --id " + answer.id +
+                               ": what people made is then added";
+  }
+  return failure;
+}
+
 }  // namespace
 
 Outcome load_archive(Live& live, const MapRequest& request, const Common& common) {
@@ -60,7 +71,7 @@ Outcome load_archive(Live& live, const MapRequest& request, const Common& common
         return false;
       });
   if (is_refusal(ingest())) return refused(*ingest());
-  if (is_refusal(merge())) return refused(*merge());
+  if (is_refusal(merge())) return refused_half_way(*merge(), is_done(ingest()));
   if (!is_done(ingest()) || !is_done(merge())) return not_loaded(live, request);
   common.print({{"id", request.id}, {"ingest", to_json(*ingest())}, {"merge", to_json(*merge())}},
                "ingest: " + ingest()->message + "\nmerge: " + merge()->message);

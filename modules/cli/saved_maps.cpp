@@ -57,9 +57,8 @@ std::string best_format(const MapList& list, const std::string& map) {
 }
 
 Outcome load(const Load& load, const Common& common) {
-  for (const std::string& name : {load.agent, load.id}) {
-    if (!name.empty() && !is_name(name)) return bad_name(name);
-  }
+  if (const auto fine = check_own_id(load.id); !fine) return fail(fine.error());
+  if (!load.agent.empty() && !is_name(load.agent)) return bad_name(load.agent);
   if (!is_name(load.map)) return bad_name(load.map);
   Live live(common);
   MapRequest request{live.id_or_new(load.id), MapRequest::Op::kLoad, load.map, load.format, false, load.agent};

@@ -9,18 +9,11 @@
 namespace concord {
 namespace {
 
-constexpr double kRotationError = 1e-6;
-constexpr double kFarthestPlacement = 10'000.0;  // metres, as make_transform takes
-
 Result<void> check_transform(const Transform& T) {
-  const Eigen::Matrix3d R = T.linear();
-  if (!R.allFinite() || !T.translation().allFinite()) {
+  if (!T.linear().allFinite() || !T.translation().allFinite()) {
     return refuse(Code::kNotFinite, "transform has a component that is not finite");
   }
-  const double error = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (!(error < kRotationError) || R.determinant() < 0) {
-    return refuse(Code::kBadTransform, "transform is no rotation and translation");
-  }
+  if (!is_rotation(T.linear())) return refuse(Code::kBadTransform, "transform is no rotation and translation");
   if (T.translation().cwiseAbs().maxCoeff() > kFarthestPlacement) {
     return refuse(Code::kBadTransform, "translation is over 10 km; is it in metres?");
   }

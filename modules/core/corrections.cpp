@@ -50,6 +50,12 @@ struct Summarise {
 
 }  // namespace
 
+std::optional<Kind> operation_called(std::string_view name) {
+  const auto* known = std::ranges::find(kOperationNames, name);
+  if (known == kOperationNames.end()) return std::nullopt;
+  return static_cast<Kind>(known - kOperationNames.begin());
+}
+
 Operation summary(const Correction& correction, bool active) {
   Operation out;
   out.revision = correction.revision;
