@@ -1,5 +1,7 @@
 #include "cli/demo_report.hpp"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
