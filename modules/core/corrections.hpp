@@ -59,7 +59,7 @@ struct UndoRequest {
 /// A volume that people fenced off, or opened to contact, for planning. Map data, not a rated safety function.
 struct Zone {
   enum class Kind { kNoGo, kAllowContact };
-  std::string name;  ///< is_title; unique
+  std::string name;  ///< is_title when it was made; unique
   Kind kind = Kind::kNoGo;
   Volume volume;
   Transform T_map_zone = Transform::Identity();
