@@ -218,9 +218,7 @@ int AgentsNode::weight_of(const std::string& id) const {
   return people_.weight(id).value_or(context_.site.agent(id).weight);
 }
 
-bool AgentsNode::all_heard() const {
-  return ingest_heard_ && context_.bus.now() - *ingest_heard_ >= kAllHeard;
-}
+bool AgentsNode::all_heard() const { return ingest_heard_ && context_.bus.now() - *ingest_heard_ >= kAllHeard; }
 
 bool AgentsNode::has_all_that_was_aligned() const {
   const bool all = std::ranges::all_of(awaited_, [&](const std::string& id) {
