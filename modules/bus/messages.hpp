@@ -92,6 +92,7 @@ struct MapList {
 
 struct AgentList {
   std::int64_t utime = 0;
+  double resolution = 0;  ///< edge of a voxel everywhere in this site, metres
   std::vector<AgentState> agents;
 };
 

@@ -90,12 +90,13 @@ struct Lease {
   std::int64_t until = 0;  ///< microseconds since 1970
 };
 
-/// Holding again with the same id renews it, and may move it.
+/// Holding the same lease again renews it, and may move it.
 struct LeaseRequest {
   std::string id;
   std::string author;
-  bool hold = true;  ///< false: it is freed
-  Volume volume;     ///< not heeded when it is freed
+  std::string lease;  ///< its id, which its author shares with others
+  bool hold = true;   ///< false: it is freed
+  Volume volume;      ///< not heeded when it is freed
   WorkFrame frame;
   std::int64_t utime = 0;
 };

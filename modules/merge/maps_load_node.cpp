@@ -21,16 +21,15 @@ void MapsNode::load(const MapRequest& request) {
 
 /// Nothing that could refuse the file is left for when its layers have been loaded.
 void MapsNode::advance(const MapRequest& request, std::uint64_t content) {
-  if (const auto opened = open(request, content); !opened) return replies_.deny(kRequests, request.id, opened.error());
+  const auto deny = [&](const Error& why) { answers_.give(replies_.denied(kRequests, request.id, why), content); };
+  if (const auto opened = open(request, content); !opened) return deny(opened.error());
   const bool has_all = has_layers();
   if (!has_all && opened_->fits_at == parts_.people.revision()) return say_may_load(request);
   const auto corrections = following();
-  if (!corrections) return replies_.deny(kRequests, request.id, corrections.error());
+  if (!corrections) return deny(corrections.error());
   opened_->fits_at = parts_.people.revision();
   if (!has_all) return say_may_load(request);
-  if (const auto done = parts_.people_node.commit(*corrections); !done) {
-    return replies_.deny(kRequests, request.id, done.error());
-  }
+  if (const auto done = parts_.people_node.commit(*corrections); !done) return deny(done.error());
   opened_.reset();
   answers_.give(replies_.granted(request.id, parts_.people.revision(), static_cast<std::int64_t>(corrections->size()),
                                  "took over what people corrected"),
