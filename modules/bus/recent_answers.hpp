@@ -21,16 +21,17 @@ class RecentAnswers {
 
   /// Whether nothing more needs to be done: this request was answered before, and that answer was given once more; or
   /// its id belongs to another one that was granted, and it was refused (EXISTS). `content` tells requests of one id
-  /// apart.
-  [[nodiscard]] bool repeat(const std::string& id, const std::string& process, std::uint64_t content) const;
+  /// apart, and `asked` (its utime) those that were refused from the same asked anew.
+  [[nodiscard]] bool repeat(const std::string& id, const std::string& process, std::uint64_t content,
+                            std::int64_t asked = 0) const;
 
-  void give(const Answer& value, std::uint64_t content);
+  void give(const Answer& value, std::uint64_t content, std::int64_t asked = 0);
 
  private:
   struct Given {
     Answer answer;
     std::uint64_t content;
-    std::int64_t utime;
+    std::int64_t asked, utime;
   };
 
   Bus& bus_;

@@ -14,14 +14,16 @@ namespace concord {
 void MapsNode::load(const MapRequest& request) {
   if (request.format != kNative && !(request.format.empty() && maps_.contains(request.map, kNative))) return;
   const std::uint64_t content = content_of(request);
-  if (answers_.repeat(request.id, context_.process, content)) return;
+  if (answers_.repeat(request.id, context_.process, content, request.utime)) return;
   if (parts_.people_node.repeat(kRequests, request.id, content)) return;
   advance(request, content);
 }
 
 /// Nothing that could refuse the file is left for when its layers have been loaded.
 void MapsNode::advance(const MapRequest& request, std::uint64_t content) {
-  const auto deny = [&](const Error& why) { answers_.give(replies_.denied(kRequests, request.id, why), content); };
+  const auto deny = [&](const Error& why) {
+    answers_.give(replies_.denied(kRequests, request.id, why), content, request.utime);
+  };
   if (const auto opened = open(request, content); !opened) return deny(opened.error());
   const bool has_all = has_layers();
   if (!has_all && opened_->fits_at == parts_.people.revision()) return say_may_load(request);

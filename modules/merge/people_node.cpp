@@ -72,11 +72,12 @@ template <class Request, class Check>
 void PeopleNode::hear(const std::string& channel, Check check) {
   listen<Request>(context_.bus, context_.counters, context_.process, channel,
                   [this, check](const std::string& on, Request request) {
+                    const std::int64_t asked = request.utime;
                     const std::uint64_t content = content_without_time(request);
                     if (repeat(on, request.id, content)) return;
-                    if (answers_.repeat(request.id, context_.process, content)) return;
+                    if (answers_.repeat(request.id, context_.process, content, asked)) return;
                     const auto deny = [&](const Error& why) {
-                      answers_.give(replies_.denied(on, request.id, why), content);
+                      answers_.give(replies_.denied(on, request.id, why), content, asked);
                     };
                     auto what = check(request);
                     if (!what) return deny(what.error());
