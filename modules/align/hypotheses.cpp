@@ -1,0 +1,154 @@
+#include "align/hypotheses.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "align/column_search.hpp"
+#include "align/height_search.hpp"
+
+namespace concord {
+namespace {
+
+// What a person's guess may be off by, with a margin: 2 m on each axis, 45 degrees of yaw.
+constexpr double kGuessYaw = 52.0 * M_PI / 180.0;
+constexpr double kGuessReach = 2.6;   // metres
+constexpr double kGuessHeight = 3.0;  // metres: less than a storey
+/// A guess that is tilted by more than this means it: the source's frame is not upright. Less is a shaky hand.
+constexpr double kMeantTilt = 15.0 * M_PI / 180.0;
+constexpr double kAnyHeight = 50.0;
+
+constexpr std::size_t kPlaces = 8;
+constexpr std::size_t kRoughPoints = 3000;
+constexpr std::size_t kFinePoints = 8000;
+constexpr std::size_t kLastPoints = 20'000;
+constexpr std::size_t kMinLevelCells = 150;  // flat ones; a coarser level of a small room says nothing
+constexpr int kRoughIterations = 12;
+constexpr int kFineIterations = 20;
+constexpr std::size_t kJudgePieces = 3000;
+
+std::size_t flat_count(const SurfaceLevel& level) {
+  return std::count_if(level.cells().begin(), level.cells().end(), [](const SurfaceCell& c) { return c.is_flat(); });
+}
+
+/// One level: the source's cells of about the size of the target's against those.
+void refine_level(const AlignMap& target, const SurfaceLevel& to, const SurfaceLevel& from, std::size_t points,
+                  int iterations, int threads, GicpResult& result) {
+  const std::vector<SurfaceCell> source = cropped(target, from, result.T_target_source, points);
+  const int before = result.iterations;
+  result = refine(to, source, result.T_target_source, {0.5 * to.size(), iterations, threads});
+  result.iterations += before;
+}
+
+/// Coarse levels only, as far as both maps have them.
+GicpResult refine_roughly(const AlignMap& target, const AlignMap& source, const Transform& T, std::size_t points,
+                          int threads) {
+  GicpResult result;
+  result.T_target_source = T;
+  const std::size_t levels = std::min(target.levels.size(), source.levels.size());
+  for (std::size_t i = 1; i <= levels; ++i) {
+    const SurfaceLevel& to = target.levels[target.levels.size() - i];
+    const SurfaceLevel& from = source.levels[source.levels.size() - i];
+    const bool last = i == levels || i == 2;
+    if (!last && std::min(flat_count(to), flat_count(from)) < kMinLevelCells) continue;
+    refine_level(target, to, from, points, kRoughIterations, threads, result);
+    if (last) break;
+  }
+  return result;
+}
+
+struct UprightPair {
+  Eigen::Matrix3d target, source;
+  std::optional<Transform> guess;  ///< between the upright frames
+};
+
+UprightPair make_upright(const AlignMap& target, const AlignMap& source, const std::optional<Transform>& guess) {
+  UprightPair out{target.R_upright_map, source.R_upright_map, std::nullopt};
+  if (!guess) return out;
+  const auto between = [&] { return Transform(Transform(out.target) * *guess * Transform(out.source).inverse()); };
+  Transform T = between();
+  if (std::acos(std::clamp(T.linear()(2, 2), -1.0, 1.0)) > kMeantTilt) {
+    const double yaw = std::atan2(guess->linear()(1, 0), guess->linear()(0, 0));
+    out.source = Eigen::AngleAxisd(-yaw, Eigen::Vector3d::UnitZ()) * out.target * guess->linear();
+    T = between();
+  }
+  out.guess = T;
+  return out;
+}
+
+/// How far to lift the source: anywhere, or near where a guess has its middle or its origin.
+std::pair<double, double> height_window(const UprightPair& pair, const AlignMap& source) {
+  if (!pair.guess) return {-kAnyHeight, kAnyHeight};
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  const std::vector<SurfaceCell>& cells = source.levels.back().cells();
+  for (const SurfaceCell& cell : cells) middle += cell.mean.cast<double>();
+  middle = pair.source * middle / static_cast<double>(cells.size());
+  const double at_origin = pair.guess->translation().z();
+  const double at_middle = (*pair.guess * middle).z() - middle.z();
+  return {std::min(at_origin, at_middle) - kGuessHeight, std::max(at_origin, at_middle) + kGuessHeight};
+}
+
+std::vector<Transform> places(const AlignMap& target, const AlignMap& source, const std::optional<Transform>& guess,
+                              int threads) {
+  const UprightPair pair = make_upright(target, source, guess);
+  const auto [low, high] = height_window(pair, source);
+  const SearchWindow window{pair.guess, kGuessYaw, kGuessReach};
+  std::vector<Transform> out;
+  for (const PlanarPose& pose : search_columns(target, pair.target, source, pair.source, window, kPlaces, threads)) {
+    Transform T = Transform::Identity();
+    T.translation().head<2>() = pose.t;
+    T.rotate(Eigen::AngleAxisd(pose.yaw, Eigen::Vector3d::UnitZ()));
+    for (const double z : search_heights(target, pair.target, source, pair.source, T, low, high)) {
+      Transform lifted = T;
+      lifted.translation().z() = z;
+      out.emplace_back(Transform(pair.target).inverse() * lifted * Transform(pair.source));
+    }
+  }
+  if (guess) out.push_back(*guess);
+  return out;
+}
+
+}  // namespace
+
+std::vector<SurfaceCell> cropped(const AlignMap& target, const SurfaceLevel& source, const Transform& T,
+                                 std::size_t most) {
+  std::vector<SurfaceCell> near;
+  for (const SurfaceCell& cell : source.cells()) {
+    if (target.levels.back().nearest(T * cell.mean.cast<double>()) != nullptr) near.push_back(cell);
+  }
+  if (near.size() <= most) return near;
+  std::vector<SurfaceCell> out;
+  for (std::size_t i = 0; i < most; ++i) out.push_back(near[i * near.size() / most]);
+  return out;
+}
+
+std::vector<Hypothesis> find_hypotheses(const AlignMap& target, const AlignMap& source,
+                                        const std::optional<Transform>& guess, int threads) {
+  std::vector<Hypothesis> all;
+  for (const Transform& place : places(target, source, guess, threads)) {
+    const GicpResult result = refine_roughly(target, source, place, kRoughPoints, threads);
+    const double score = support(target, source, result.T_target_source, kJudgePieces, threads).score();
+    all.push_back({result.T_target_source, score, result.iterations});
+  }
+  std::stable_sort(all.begin(), all.end(), [](const Hypothesis& a, const Hypothesis& b) { return a.score > b.score; });
+  return all;
+}
+
+GicpResult refine_fully(const AlignMap& target, const AlignMap& source, const Transform& T, int threads) {
+  GicpResult result = refine_roughly(target, source, T, kFinePoints, threads);
+  refine_level(target, target.fine(), source.fine(), kFinePoints, kFineIterations, threads, result);
+  std::vector<SurfaceCell> points;
+  const std::size_t stride = std::max<std::size_t>(1, source.points.size() / kLastPoints);
+  for (std::size_t i = 0; i < source.points.size(); i += stride) {
+    const SurfaceCell* cell = source.fine().nearest(source.points[i].cast<double>());
+    if (cell == nullptr || !cell->is_flat()) continue;
+    if (target.levels.back().nearest(result.T_target_source * source.points[i].cast<double>()) == nullptr) continue;
+    points.push_back({source.points[i], cell->normal});
+  }
+  const int before = result.iterations;
+  const double kernel = std::max(target.resolution, 0.05);
+  result = refine(target.fine(), points, result.T_target_source, {kernel, kFineIterations, threads});
+  result.iterations += before;
+  return result;
+}
+
+}  // namespace concord

@@ -1,0 +1,104 @@
+#include "align/surface_level.hpp"
+
+#include <algorithm>
+
+#include <Eigen/Eigenvalues>
+
+#include "align/workers.hpp"
+
+namespace concord {
+namespace {
+
+constexpr std::size_t kCellsPerChunk = 1024;
+/// Fewer points than this make any plane.
+constexpr double kMinPlanePoints = 6.0;
+/// A plane is thin: its smallest variance is below this share of the middle one. Voxel centres on a slanted wall reach
+/// 0.06, an edge of two walls has 0.3 and more.
+constexpr double kMaxThickness = 0.15;
+
+Eigen::Vector3f normal_of(const Moments& m) {
+  if (m.count < kMinPlanePoints) return Eigen::Vector3f::Zero();
+  const Eigen::Vector3d mean = m.sum / m.count;
+  Eigen::Matrix3d covariance;
+  const auto& o = m.outer;
+  covariance << o[0], o[1], o[2], o[1], o[3], o[4], o[2], o[4], o[5];
+  covariance = covariance / m.count - mean * mean.transpose();
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(covariance);
+  const Eigen::Vector3d variances = solver.eigenvalues();
+  if (!(variances[1] > 0.0) || variances[0] > kMaxThickness * variances[1]) return Eigen::Vector3f::Zero();
+  return solver.eigenvectors().col(0).normalized().cast<float>();
+}
+
+}  // namespace
+
+void Moments::add(const Eigen::Vector3d& p) {
+  count += 1.0;
+  sum += p;
+  outer[0] += p.x() * p.x();
+  outer[1] += p.x() * p.y();
+  outer[2] += p.x() * p.z();
+  outer[3] += p.y() * p.y();
+  outer[4] += p.y() * p.z();
+  outer[5] += p.z() * p.z();
+}
+
+void Moments::add(const Moments& other) {
+  count += other.count;
+  sum += other.sum;
+  outer += other.outer;
+}
+
+SurfaceLevel::SurfaceLevel(std::span<const Eigen::Vector3f> points, double size, int threads) : size_(size) {
+  for (const Eigen::Vector3f& point : points) {
+    const Eigen::Vector3d p = point.cast<double>();
+    const auto cell = static_cast<std::size_t>(table_.insert(voxel_of(p, size)));
+    if (cell == moments_.size()) moments_.emplace_back();
+    moments_[cell].add(p);
+  }
+  find_planes(threads);
+}
+
+SurfaceLevel::SurfaceLevel(const SurfaceLevel& finer, double size, int threads) : size_(size) {
+  for (const Moments& moments : finer.moments_) {
+    const auto cell = static_cast<std::size_t>(table_.insert(voxel_of(moments.sum / moments.count, size)));
+    if (cell == moments_.size()) moments_.emplace_back();
+    moments_[cell].add(moments);
+  }
+  find_planes(threads);
+}
+
+void SurfaceLevel::find_planes(int threads) {
+  cells_.resize(moments_.size());
+  for_each_chunk(threads, chunks_of(cells_.size(), kCellsPerChunk), [&](std::size_t chunk) {
+    const std::size_t end = std::min(cells_.size(), (chunk + 1) * kCellsPerChunk);
+    for (std::size_t i = chunk * kCellsPerChunk; i < end; ++i) {
+      const VoxelIndex at = table_.cells()[i];
+      Moments around;
+      for (int step = 0; step < 27; ++step) {
+        const int found = table_.find({at.x + step % 3 - 1, at.y + step / 3 % 3 - 1, at.z + step / 9 - 1});
+        if (found >= 0) around.add(moments_[found]);
+      }
+      cells_[i] = {(moments_[i].sum / moments_[i].count).cast<float>(), normal_of(around)};
+    }
+  });
+}
+
+const SurfaceCell* SurfaceLevel::nearest(const Eigen::Vector3d& p) const {
+  const VoxelIndex low = voxel_of(p.array() - 0.5 * size_, size_);
+  const Eigen::Vector3f q = p.cast<float>();
+  const SurfaceCell* best = nullptr;
+  float least = 0.0F;
+  for (int step = 0; step < 8; ++step) {
+    const int found = table_.find({low.x + (step & 1), low.y + (step >> 1 & 1), low.z + (step >> 2)});
+    if (found < 0) continue;
+    const float squared = (cells_[found].mean - q).squaredNorm();
+    if (best == nullptr || squared < least) {
+      best = &cells_[found];
+      least = squared;
+    }
+  }
+  return best;
+}
+
+}  // namespace concord

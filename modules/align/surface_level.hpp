@@ -1,0 +1,53 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "align/cell_table.hpp"
+#include "align/surface.hpp"
+
+namespace concord {
+
+/// What lies in one cell: a flat piece of surface, or something that is none.
+struct SurfaceCell {
+  Eigen::Vector3f mean;    ///< of the points in the cell, metres
+  Eigen::Vector3f normal;  ///< unit length, either sign; zero where the points around are no plane
+  [[nodiscard]] bool is_flat() const { return !normal.isZero(0.0F); }
+};
+
+/// Number, sum and sum of outer products (xx, xy, xz, yy, yz, zz) of points: sums of these are those of the union.
+struct Moments {
+  double count = 0.0;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix<double, 6, 1> outer = Eigen::Matrix<double, 6, 1>::Zero();
+  void add(const Eigen::Vector3d& p);
+  void add(const Moments& other);
+};
+
+/// A surface at one size of cells, as a voxelised GICP has it (Koide et al., ICRA 2021): a mean for each cell, and a
+/// normal from the points of the 3 x 3 x 3 cells around.
+class SurfaceLevel {
+ public:
+  /// @pre size > 0, points within kMaxSurfaceReach.
+  SurfaceLevel(std::span<const Eigen::Vector3f> points, double size, int threads);
+  /// The same surface in larger cells.
+  SurfaceLevel(const SurfaceLevel& finer, double size, int threads);
+
+  [[nodiscard]] double size() const { return size_; }
+  [[nodiscard]] const std::vector<SurfaceCell>& cells() const { return cells_; }
+  /// The cell with the nearest mean among the eight whose centres are nearest; none: null. It finds whatever lies
+  /// within size / 2, and nothing beyond 2.6 size.
+  [[nodiscard]] const SurfaceCell* nearest(const Eigen::Vector3d& p) const;
+
+ private:
+  void find_planes(int threads);
+
+  double size_;
+  CellTable table_;
+  std::vector<Moments> moments_;  // as numbered by table_
+  std::vector<SurfaceCell> cells_;
+};
+
+}  // namespace concord
