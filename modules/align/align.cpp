@@ -16,13 +16,11 @@ constexpr std::size_t kJudgePieces = 20'000;
 constexpr std::size_t kRivalPieces = 6000;
 
 constexpr double kMinOverlap = 0.30;
-constexpr double kMinUprightArea = 2.0;  // square metres of walls that lie on walls, mean of both ways
-constexpr double kMaxUprightContradiction = 0.15;
-constexpr double kMaxLevelContradiction = 0.25;
-constexpr double kRivalShare = 0.85;
+constexpr double kMinHeld = 1.0;  // square metres that face a direction, both ways
+constexpr double kMaxUprightAgainst = 0.12;
+constexpr double kMaxLevelAgainst = 0.15;
 constexpr double kSamePlace = 0.25;  // metres
 constexpr double kSameTurn = 3.0 * M_PI / 180.0;
-constexpr double kMaxRms = 0.75;  // voxels of the coarser map... in cells of the fine level
 
 double turn_between(const Transform& a, const Transform& b) {
   return Eigen::AngleAxisd(Eigen::Matrix3d(a.linear().transpose() * b.linear())).angle();
@@ -49,20 +47,37 @@ const char* name(AlignReason reason) {
 
 namespace {
 
-/// Slides the source along the ground from where it was found; a place that explains as much is a rival.
-void probe_slides(const AlignMap& target, const AlignMap& source, const GicpResult& fine, int threads, Alignment& out) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> along(fine.hessian.block<2, 2>(3, 3));
-  for (int axis = 0; axis < 2; ++axis) {
-    const Eigen::Vector3d direction(along.eigenvectors()(0, axis), along.eigenvectors()(1, axis), 0.0);
+/// What a place must show to be believed, were it the only one.
+struct Gates {
+  static AlignReason check(const Support& s) {
+    if (std::max(s.overlap_source(), s.overlap_target()) < kMinOverlap) return AlignReason::kLowOverlap;
+    if (s.least_held().second < kMinHeld) return AlignReason::kDegenerate;
+    if (s.level().matched < kMinHeld) return AlignReason::kDegenerate;
+    if (s.score() < 0.0 || s.upright().share_against() > kMaxUprightAgainst ||
+        s.level().share_against() > kMaxLevelAgainst) {
+      return AlignReason::kDiverged;
+    }
+    return AlignReason::kAccepted;
+  }
+};
+
+/// Slides the source along the ground from where it was found; a place that passes the gates as well is a rival.
+void probe_slides(const AlignMap& target, const AlignMap& source, const GicpResult& fine, const Support& best,
+                  int threads, Alignment& out) {
+  const Eigen::Vector2d weak = best.least_held().first;
+  for (const Eigen::Vector2d& axis : {weak, Eigen::Vector2d(-weak.y(), weak.x())}) {
+    const Eigen::Vector3d direction(axis.x(), axis.y(), 0.0);
     for (const double step : {-2.0, -1.0, -0.5, 0.5, 1.0, 2.0}) {
       Transform T = fine.T_target_source;
       T.translation() += step * direction;
-      const double score = support(target, source, T, kRivalPieces, threads).score();
-      if (score > out.rival_score) {
-        out.rival_score = score;
+      const Support s = support(target, source, T, kRivalPieces, threads);
+      if (Gates::check(s) != AlignReason::kAccepted) continue;
+      if (s.score() > out.rival_score) {
+        out.rival_score = s.score();
         out.T_target_source_rival = T;
-        if (score > kRivalShare * out.score) out.loose.push_back(name_slide(direction));
       }
+      const std::string words = name_slide(direction);
+      if (std::find(out.loose.begin(), out.loose.end(), words) == out.loose.end()) out.loose.push_back(words);
     }
   }
 }
@@ -74,21 +89,20 @@ void judge(const AlignMap& target, const AlignMap& source, const GicpResult& fin
   const Support s = support(target, source, fine.T_target_source, kJudgePieces, threads);
   out.overlap_source = s.overlap_source();
   out.overlap_target = s.overlap_target();
-  out.contradiction_upright = s.upright().contradiction();
-  out.contradiction_level = s.level().contradiction();
-  out.score = support(target, source, fine.T_target_source, kRivalPieces, threads).score();
-  for (const LooseDirection& loose : loose_directions(fine)) out.loose.push_back(loose.words);
-  probe_slides(target, source, fine, threads, out);
-  if (out.overlap() < kMinOverlap || s.upright().matched < 2.0 * kMinUprightArea) {
-    out.reason = AlignReason::kLowOverlap;
-  } else if (out.contradiction_upright > kMaxUprightContradiction || out.contradiction_level > kMaxLevelContradiction) {
-    out.reason = AlignReason::kDiverged;
-  } else if (!out.loose.empty()) {
+  out.contradiction_upright = s.upright().share_against();
+  out.contradiction_level = s.level().share_against();
+  out.score = s.score();
+  const auto [weak, held] = s.least_held();
+  if (held < kMinHeld) out.loose.push_back(name_slide({weak.x(), weak.y(), 0.0}));
+  if (s.level().matched < kMinHeld) out.loose.push_back(name_slide(Eigen::Vector3d::UnitZ()));
+  out.reason = Gates::check(s);
+  if (out.reason != AlignReason::kAccepted) return;
+  const bool has_rival = out.rival_score > 0.0;
+  probe_slides(target, source, fine, s, threads, out);
+  if (!out.loose.empty()) {
     out.reason = AlignReason::kDegenerate;
-  } else if (out.rival_score > kRivalShare * out.score) {
+  } else if (has_rival) {
     out.reason = AlignReason::kAmbiguous;
-  } else {
-    out.reason = AlignReason::kAccepted;
   }
 }
 
@@ -105,13 +119,15 @@ Alignment align(const AlignMap& target, const AlignMap& source, const std::optio
   }
   const Transform best = hypotheses.front().T_target_source;
   const GicpResult fine = refine_fully(target, source, best, threads);
+  const Eigen::Vector3d p_source = fine.T_target_source.inverse() * fine.p_target_centre;
   for (const Hypothesis& h : hypotheses) {
     out.iterations += h.iterations;
-    if (h.score > out.rival_score &&
-        differ(h.T_target_source, best, fine.T_target_source.inverse() * fine.p_target_centre)) {
-      out.rival_score = h.score;
-      out.T_target_source_rival = h.T_target_source;
+    if (h.score <= out.rival_score || !differ(h.T_target_source, best, p_source)) continue;
+    if (Gates::check(support(target, source, h.T_target_source, kRivalPieces, threads)) != AlignReason::kAccepted) {
+      continue;
     }
+    out.rival_score = h.score;
+    out.T_target_source_rival = h.T_target_source;
   }
   out.iterations += fine.iterations;
   judge(target, source, fine, threads, out);

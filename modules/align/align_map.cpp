@@ -38,6 +38,12 @@ Result<AlignMap> make(Result<SurfacePoints> points, double resolution, int threa
   return out;
 }
 
+void orient(AlignMap& map) {
+  for (SurfaceLevel& level : map.levels) {
+    level.orient([&](const Eigen::Vector3d& p) { return map.free.contains(p); });
+  }
+}
+
 bool usable(double resolution) {
   return std::isfinite(resolution) && resolution >= kMinAlignResolution && resolution <= 0.5 * kMaxFineCell;
 }
@@ -84,15 +90,18 @@ Result<AlignMap> make_align_map(const BrickMap& map, double resolution, int thre
   if (!out) return out;
   out->free = FreeSpace::known(map, resolution);
   if (static_cast<double>(out->free.block_count()) < kMinFreeShare * static_cast<double>(out->fine().cells().size())) {
-    out->free = FreeSpace::over_floors(out->fine());
+    out->free = FreeSpace::implied(out->fine(), threads);
   }
+  orient(*out);
   return out;
 }
 
 Result<AlignMap> make_align_map(std::span<const Eigen::Vector3f> cloud, double resolution, int threads) {
   if (!usable(resolution)) return refuse_resolution(resolution);
   Result<AlignMap> out = make(surface_points(cloud), resolution, threads);
-  if (out) out->free = FreeSpace::over_floors(out->fine());
+  if (!out) return out;
+  out->free = FreeSpace::implied(out->fine(), threads);
+  orient(*out);
   return out;
 }
 

@@ -1,9 +1,11 @@
 #include "align/evidence.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 #include "align/workers.hpp"
@@ -14,43 +16,65 @@ namespace {
 constexpr std::size_t kPiecesPerChunk = 512;
 constexpr float kUprightNormalZ = 0.6F;
 constexpr double kSameFacing = 0.8;  // cosine of 37 degrees
-/// Across a surface, in cells of it (twice the resolution): three quarters of a cell, 1.5 voxels.
+/// Across a surface, in cells of it (twice the resolution): 1.5 voxels.
 constexpr double kAcross = 0.75;
 /// From the nearest surface, in cells: nearer than that nothing is contradicted, as poses drift and edges fray.
 constexpr double kClear = 1.5;
+constexpr double kAgainst = 4.0;  // see Support::score
 
-/// Cells whose normals scatter by 6 degrees put this share of their weight on directions that nothing measures.
-constexpr double kLooseShare = 0.015;
 constexpr double kPairsPerMeasurement = 10.0;
 constexpr double kMinSigma = 0.01;  // metres across a surface: what a lattice can hide
 
 struct Asked {
   Verdicts upright, level;
+  Eigen::Matrix2d matched = Eigen::Matrix2d::Zero();  // in the frame of who answers
+  Eigen::Matrix2d against = Eigen::Matrix2d::Zero();
+  void add(const Asked& other) {
+    upright.add(other.upright);
+    level.add(other.level);
+    matched += other.matched;
+    against += other.against;
+  }
 };
 
-Asked ask(const SurfaceLevel& surface, const FreeSpace& free, const SurfaceLevel& other, const Transform& T,
-          std::size_t begin, std::size_t end, std::size_t stride) {
+enum class Answer { kNothing, kMatched, kDisplaced, kContradicted };
+
+/// What a map says of a piece of surface at `p` with normal `n`.
+Answer answer(const AlignMap& map, const Eigen::Vector3d& p, const Eigen::Vector3d& n, const SurfaceCell& piece) {
+  const double size = map.fine().size();
+  const SurfaceCell* nearest = map.fine().nearest(p);
+  if (nearest != nullptr) {
+    const Eigen::Vector3d d = nearest->mean.cast<double>() - p;
+    if (d.norm() < kClear * size) {
+      if (!nearest->is_flat()) return Answer::kNothing;
+      const Eigen::Vector3d m = nearest->normal.cast<double>();
+      const double across = std::abs(m.dot(d));
+      const double cosine = m.dot(n);
+      if (back_to_back(*nearest, piece, cosine)) return Answer::kNothing;
+      if (std::abs(cosine) > kSameFacing && across < kAcross * size) return Answer::kMatched;
+      const double along = std::sqrt(std::max(0.0, d.squaredNorm() - across * across));
+      return along < size ? Answer::kDisplaced : Answer::kNothing;
+    }
+  }
+  return map.free.contains(p) ? Answer::kContradicted : Answer::kNothing;
+}
+
+Asked ask(const AlignMap& map, const SurfaceLevel& other, const Transform& T, std::size_t begin, std::size_t end,
+          std::size_t stride) {
   Asked out;
   const double area = other.size() * other.size() * static_cast<double>(stride);
-  const double across = kAcross * surface.size();
-  const double clear = kClear * surface.size();
   for (std::size_t i = begin; i < end; ++i) {
     const SurfaceCell& piece = other.cells()[i * stride];
     if (!piece.is_flat()) continue;
-    Verdicts& verdicts = std::abs(piece.normal.z()) < kUprightNormalZ ? out.upright : out.level;
+    const bool is_upright = std::abs(piece.normal.z()) < kUprightNormalZ;
+    Verdicts& verdicts = is_upright ? out.upright : out.level;
     verdicts.all += area;
-    const Eigen::Vector3d p = T * piece.mean.cast<double>();
-    const SurfaceCell* nearest = surface.nearest(p);
-    if (nearest != nullptr) {
-      const Eigen::Vector3d d = nearest->mean.cast<double>() - p;
-      if (d.norm() < clear) {
-        const Eigen::Vector3d n = nearest->normal.cast<double>();
-        const bool faces = std::abs(n.dot(T.linear() * piece.normal.cast<double>())) > kSameFacing;
-        if (faces && std::abs(n.dot(d)) < across) verdicts.matched += area;
-        continue;
-      }
-    }
-    if (free.contains(p)) verdicts.contradicted += area;
+    const Eigen::Vector3d n = T.linear() * piece.normal.cast<double>();
+    const Answer said = answer(map, T * piece.mean.cast<double>(), n, piece);
+    if (said == Answer::kNothing) continue;
+    const bool matched = said == Answer::kMatched;
+    (matched ? verdicts.matched : said == Answer::kDisplaced ? verdicts.displaced : verdicts.contradicted) += area;
+    if (is_upright) (matched ? out.matched : out.against) += area * n.head<2>() * n.head<2>().transpose();
   }
   return out;
 }
@@ -61,14 +85,11 @@ Asked ask_all(const AlignMap& map, const AlignMap& other, const Transform& T, st
   const std::size_t count = chunks_of(surface.cells().size(), stride);
   std::vector<Asked> parts(chunks_of(count, kPiecesPerChunk));
   for_each_chunk(threads, parts.size(), [&](std::size_t chunk) {
-    parts[chunk] = ask(map.fine(), map.free, surface, T, chunk * kPiecesPerChunk,
-                       std::min(count, (chunk + 1) * kPiecesPerChunk), stride);
+    parts[chunk] =
+        ask(map, surface, T, chunk * kPiecesPerChunk, std::min(count, (chunk + 1) * kPiecesPerChunk), stride);
   });
   Asked out;
-  for (const Asked& part : parts) {
-    out.upright.add(part.upright);
-    out.level.add(part.level);
-  }
+  for (const Asked& part : parts) out.add(part);
   return out;
 }
 
@@ -76,50 +97,65 @@ double share(const Verdicts& a, const Verdicts& b) {
   return a.all + b.all > 0.0 ? (a.matched + b.matched) / (a.all + b.all) : 0.0;
 }
 
-std::string in_axes(const Eigen::Vector3d& axis) {
-  int largest = 0;
-  axis.cwiseAbs().maxCoeff(&largest);
-  const Eigen::Vector3d a = axis[largest] < 0.0 ? Eigen::Vector3d(-axis) : axis;
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "%c (%.2f %.2f %.2f)", "xyz"[largest], a.x(), a.y(), a.z());
-  return text.data();
+}  // namespace
+
+void Verdicts::add(const Verdicts& other) {
+  all += other.all;
+  matched += other.matched;
+  displaced += other.displaced;
+  contradicted += other.contradicted;
 }
 
-}  // namespace
+Verdicts Support::upright() const {
+  Verdicts v = source_upright;
+  v.add(target_upright);
+  return v;
+}
+
+Verdicts Support::level() const {
+  Verdicts v = source_level;
+  v.add(target_level);
+  return v;
+}
 
 double Support::overlap_source() const { return share(source_upright, source_level); }
 double Support::overlap_target() const { return share(target_upright, target_level); }
 
 double Support::score() const {
-  const Verdicts v = upright();
-  return 0.5 * v.matched - v.contradicted;
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(matched_facing - kAgainst * against_facing).eigenvalues()[0];
+}
+
+std::pair<Eigen::Vector2d, double> Support::least_held() const {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(matched_facing);
+  return {solver.eigenvectors().col(0), solver.eigenvalues()[0]};
 }
 
 Support support(const AlignMap& target, const AlignMap& source, const Transform& T_target_source, std::size_t pieces,
                 int threads) {
   const Asked of_source = ask_all(target, source, T_target_source, pieces, threads);
   const Asked of_target = ask_all(source, target, T_target_source.inverse(), pieces, threads);
-  return {of_source.upright, of_source.level, of_target.upright, of_target.level};
+  const Eigen::Matrix2d R = T_target_source.linear().topLeftCorner<2, 2>();  // what the source answers is in its frame
+  return {of_source.upright,
+          of_source.level,
+          of_target.upright,
+          of_target.level,
+          of_source.matched + R * of_target.matched * R.transpose(),
+          of_source.against + R * of_target.against * R.transpose()};
 }
 
-std::string name_slide(const Eigen::Vector3d& axis) { return "slides along " + in_axes(axis); }
-
-std::vector<LooseDirection> loose_directions(const GicpResult& result) {
-  std::vector<LooseDirection> out;
-  if (!(result.weight > 0.0)) return out;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> along(result.hessian.bottomRightCorner<3, 3>());
-  for (int i = 0; i < 3; ++i) {
-    if (along.eigenvalues()[i] > kLooseShare * result.weight) continue;
-    out.push_back({along.eigenvectors().col(i), false, name_slide(along.eigenvectors().col(i))});
-  }
-  return out;
+std::string name_slide(const Eigen::Vector3d& axis) {
+  int largest = 0;
+  axis.cwiseAbs().maxCoeff(&largest);
+  const Eigen::Vector3d a = axis[largest] < 0.0 ? Eigen::Vector3d(-axis) : axis;
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "slides along %c (%.2f %.2f %.2f)", "xyz"[largest], a.x(), a.y(), a.z());
+  return text.data();
 }
 
 Matrix6 covariance(const GicpResult& result) {
   const double sigma = std::max(result.rms, kMinSigma);
-  const Matrix6 damped =
-      result.hessian + 1e-9 * std::max(result.hessian.diagonal().maxCoeff(), 1e-9) * Matrix6::Identity();
-  const Matrix6 inverse = damped.ldlt().solve(Matrix6::Identity());
+  const double damping = 1e-9 * std::max(result.hessian.diagonal().maxCoeff(), 1e-9);
+  const Matrix6 inverse = (result.hessian + damping * Matrix6::Identity()).ldlt().solve(Matrix6::Identity());
   return sigma * sigma * kPairsPerMeasurement * 0.5 * (inverse + inverse.transpose());
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "align/align_map.hpp"
@@ -14,15 +15,13 @@ namespace concord {
 struct Verdicts {
   double all = 0.0;           ///< of the surface asked
   double matched = 0.0;       ///< lies on a surface that faces the same way
+  double displaced = 0.0;     ///< hugs a surface but does not lie on it, or faces another way
   double contradicted = 0.0;  ///< lies where the other saw that nothing is
-  void add(const Verdicts& other) {
-    all += other.all;
-    matched += other.matched;
-    contradicted += other.contradicted;
-  }
-  [[nodiscard]] double overlap() const { return all > 0.0 ? matched / all : 0.0; }
-  [[nodiscard]] double contradiction() const {
-    return matched + contradicted > 0.0 ? contradicted / (matched + contradicted) : 0.0;
+  void add(const Verdicts& other);
+  [[nodiscard]] double against() const { return displaced + contradicted; }
+  /// Of what the other can say anything about.
+  [[nodiscard]] double share_against() const {
+    return matched + against() > 0.0 ? against() / (matched + against()) : 0.0;
   }
 };
 
@@ -30,35 +29,25 @@ struct Verdicts {
 struct Support {
   Verdicts source_upright, source_level;  ///< the source's surface, judged by the target
   Verdicts target_upright, target_level;
-  [[nodiscard]] Verdicts upright() const {
-    Verdicts v = source_upright;
-    v.add(target_upright);
-    return v;
-  }
-  [[nodiscard]] Verdicts level() const {
-    Verdicts v = source_level;
-    v.add(target_level);
-    return v;
-  }
+  /// Sums over upright pieces, both ways, of area times n n^T with the horizontal normal n in the target's frame: how
+  /// much of what is matched, and of what speaks against, faces each direction.
+  Eigen::Matrix2d matched_facing = Eigen::Matrix2d::Zero();
+  Eigen::Matrix2d against_facing = Eigen::Matrix2d::Zero();
+
+  [[nodiscard]] Verdicts upright() const;
+  [[nodiscard]] Verdicts level() const;
   [[nodiscard]] double overlap_source() const;
   [[nodiscard]] double overlap_target() const;
-  /// What speaks for a place less what speaks against it, square metres of upright surface, mean of both ways.
+  /// What holds the source in the direction in which it is held least, less four times what speaks against it there:
+  /// above zero no direction has over a fifth against it. Square metres.
   [[nodiscard]] double score() const;
+  /// The least held direction along the ground, and the area of the surfaces that hold it.
+  [[nodiscard]] std::pair<Eigen::Vector2d, double> least_held() const;
 };
 
 /// `pieces`: how many of each map are asked, spread evenly.
 [[nodiscard]] Support support(const AlignMap& target, const AlignMap& source, const Transform& T_target_source,
                               std::size_t pieces, int threads);
-
-/// A direction that the surfaces do not hold.
-struct LooseDirection {
-  Eigen::Vector3d axis;  ///< target's frame, unit length
-  bool is_turn = false;  ///< about the axis; else along it
-  std::string words;     ///< e.g. "slides along x", "turns about z"
-};
-
-/// From the Hessian: the share of the pairs' weight that measures a direction is below what noise of normals gives.
-[[nodiscard]] std::vector<LooseDirection> loose_directions(const GicpResult& result);
 
 /// 6 x 6, rotation about `p_target_centre` then translation, target's axes; of the noise across the surfaces, with
 /// neighbouring cells counted as one measurement.

@@ -19,31 +19,25 @@ struct FreeColumn {
 
 /// Where a map saw that nothing is.
 ///
-/// A map of voxels says so itself, kept in blocks of 2 x 2 x 2. A cloud does not; but who sees a floor has seen that no
-/// wall stands on it, so the space over each piece of floor is taken as free up to what hangs over it, or to the
-/// height of a person.
+/// A map of voxels says so itself. A cloud does not; but who saw two pieces of surface that face each other, and
+/// nothing on the straight line between them, has seen that nothing is there; and who saw a floor, that no wall stands
+/// on it.
 class FreeSpace {
  public:
   FreeSpace() = default;
   [[nodiscard]] static FreeSpace known(const BrickMap& map, double resolution);
-  /// @pre `surface` is z up.
-  [[nodiscard]] static FreeSpace over_floors(const SurfaceLevel& surface);
+  /// What a surface lets one conclude. @pre z up.
+  [[nodiscard]] static FreeSpace implied(const SurfaceLevel& surface, int threads);
 
   [[nodiscard]] bool contains(const Eigen::Vector3d& p) const;
   /// All of it in pieces, in a fixed order.
   [[nodiscard]] std::vector<FreeColumn> columns() const;
-  /// Blocks of 2 x 2 x 2 voxels; none for what was taken from floors.
   [[nodiscard]] std::size_t block_count() const;
 
  private:
-  struct Clearance {
-    float low, high;
-  };
-
-  double cell_ = 0.0;                  // edge of a cell of table_
-  CellTable table_;                    // bricks, or columns (z = 0)
+  double block_ = 0.0;                 // metres: two voxels, or a cell of a surface
+  CellTable bricks_;                   // 4 x 4 x 4 blocks
   std::vector<std::uint64_t> blocks_;  // by brick, bit x + 4 y + 16 z
-  std::vector<Clearance> clearances_;  // by column
 };
 
 }  // namespace concord

@@ -74,7 +74,10 @@ class Linearisation {
       const SurfaceCell* partner = target_.nearest(p);
       if (partner == nullptr) continue;
       const Eigen::Vector3d d = partner->mean.cast<double>() - p;
-      const Eigen::Matrix3d M = information(partner->normal.cast<double>(), T.linear() * point.normal.cast<double>());
+      const Eigen::Vector3d n = partner->normal.cast<double>();
+      const Eigen::Vector3d m = T.linear() * point.normal.cast<double>();
+      if (back_to_back(*partner, point, n.dot(m))) continue;
+      const Eigen::Matrix3d M = information(n, m);
       const Eigen::Vector3d Md = M * d;
       const double squared = d.dot(Md);
       const double ratio = kernel / (kernel + squared);

@@ -16,8 +16,9 @@ constexpr double kRivalShare = 0.6;
 constexpr int kApart = 5;  // bins
 constexpr std::size_t kMost = 2;
 
+/// What is seen from above (floors, tables), from below (ceilings), or either; and everything.
 struct Pieces {
-  std::vector<Eigen::Vector3d> level, any;
+  std::vector<Eigen::Vector3d> floors, ceilings, either, any;
 };
 
 Pieces pieces_of(const AlignMap& map, const Eigen::Matrix3d& R) {
@@ -26,15 +27,17 @@ Pieces pieces_of(const AlignMap& map, const Eigen::Matrix3d& R) {
   for (const SurfaceCell& cell : surface.cells()) {
     const Eigen::Vector3d p = R * cell.mean.cast<double>();
     out.any.push_back(p);
-    if (std::abs((R * cell.normal.cast<double>()).z()) > kLevelNormalZ) out.level.push_back(p);
+    const double z = (R * cell.normal.cast<double>()).z();
+    if (std::abs(z) < kLevelNormalZ) continue;
+    (!cell.one_sided ? out.either : z > 0.0 ? out.floors : out.ceilings).push_back(p);
   }
   return out;
 }
 
 using Votes = std::map<int, double>;
 
-Votes votes_of(const std::vector<Eigen::Vector3d>& target, const std::vector<Eigen::Vector3d>& source,
-               const Transform& T, double low, double high) {
+void vote(const std::vector<Eigen::Vector3d>& target, const std::vector<Eigen::Vector3d>& source, const Transform& T,
+          double low, double high, Votes& votes) {
   CellTable table;
   std::vector<std::vector<float>> heights;
   for (const Eigen::Vector3d& p : target) {
@@ -44,7 +47,6 @@ Votes votes_of(const std::vector<Eigen::Vector3d>& target, const std::vector<Eig
     if (column == heights.size()) heights.emplace_back();
     heights[column].push_back(static_cast<float>(p.z()));
   }
-  Votes votes;
   const std::size_t take = std::min(source.size(), kMaxPieces);
   for (std::size_t i = 0; i < take; ++i) {
     const Eigen::Vector3d p = T * source[i * source.size() / take];
@@ -57,7 +59,6 @@ Votes votes_of(const std::vector<Eigen::Vector3d>& target, const std::vector<Eig
       if (difference >= low && difference <= high) ++votes[static_cast<int>(std::floor(difference / kBin))];
     }
   }
-  return votes;
 }
 
 std::size_t count_of(const Votes& votes) {
@@ -102,8 +103,15 @@ std::vector<double> search_heights(const AlignMap& target, const Eigen::Matrix3d
                                    double low, double high) {
   const Pieces of_target = pieces_of(target, R_upright_target);
   const Pieces of_source = pieces_of(source, R_upright_source);
-  Votes votes = votes_of(of_target.level, of_source.level, T, low, high);
-  if (count_of(votes) < kMinVotes) votes = votes_of(of_target.any, of_source.any, T, low, high);
+  Votes votes;
+  vote(of_target.floors, of_source.floors, T, low, high, votes);
+  vote(of_target.ceilings, of_source.ceilings, T, low, high, votes);
+  if (count_of(votes) < kMinVotes) {
+    vote(of_target.either, of_source.either, T, low, high, votes);
+    vote(of_target.either, of_source.floors, T, low, high, votes);
+    vote(of_target.floors, of_source.either, T, low, high, votes);
+  }
+  if (count_of(votes) < kMinVotes) vote(of_target.any, of_source.any, T, low, high, votes);
   return peaks_of(votes);
 }
 

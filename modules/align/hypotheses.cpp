@@ -10,7 +10,7 @@ namespace concord {
 namespace {
 
 // What a person's guess may be off by, with a margin: 2 m on each axis, 45 degrees of yaw.
-constexpr double kGuessYaw = 52.0 * M_PI / 180.0;
+constexpr double kGuessYaw = 46.0 * M_PI / 180.0;
 constexpr double kGuessReach = 2.6;   // metres
 constexpr double kGuessHeight = 3.0;  // metres: less than a storey
 /// A guess that is tilted by more than this means it: the source's frame is not upright. Less is a shaky hand.
@@ -142,7 +142,7 @@ GicpResult refine_fully(const AlignMap& target, const AlignMap& source, const Tr
     const SurfaceCell* cell = source.fine().nearest(source.points[i].cast<double>());
     if (cell == nullptr || !cell->is_flat()) continue;
     if (target.levels.back().nearest(result.T_target_source * source.points[i].cast<double>()) == nullptr) continue;
-    points.push_back({source.points[i], cell->normal});
+    points.push_back({source.points[i], cell->normal, cell->one_sided});
   }
   const int before = result.iterations;
   const double kernel = std::max(target.resolution, 0.05);

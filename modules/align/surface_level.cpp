@@ -15,6 +15,9 @@ constexpr double kMinPlanePoints = 6.0;
 /// A plane is thin: its smallest variance is below this share of the middle one. Voxel centres on a slanted wall reach
 /// 0.06, an edge of two walls has 0.3 and more.
 constexpr double kMaxThickness = 0.15;
+/// Where to look for free space on either side, in cells.
+constexpr double kNearSide = 2.0;
+constexpr double kFarSide = 3.5;
 
 Eigen::Vector3f normal_of(const Moments& m) {
   if (m.count < kMinPlanePoints) return Eigen::Vector3f::Zero();
@@ -79,9 +82,23 @@ void SurfaceLevel::find_planes(int threads) {
         const int found = table_.find({at.x + step % 3 - 1, at.y + step / 3 % 3 - 1, at.z + step / 9 - 1});
         if (found >= 0) around.add(moments_[found]);
       }
-      cells_[i] = {(moments_[i].sum / moments_[i].count).cast<float>(), normal_of(around)};
+      cells_[i] = {(moments_[i].sum / moments_[i].count).cast<float>(), normal_of(around), false};
     }
   });
+}
+
+void SurfaceLevel::orient(const std::function<bool(const Eigen::Vector3d&)>& is_free) {
+  for (SurfaceCell& cell : cells_) {
+    if (!cell.is_flat()) continue;
+    const auto is_open = [&](double side) {
+      const Eigen::Vector3d step = side * size_ * cell.normal.cast<double>();
+      const Eigen::Vector3d p = cell.mean.cast<double>();
+      return is_free(p + kNearSide * step) || is_free(p + kFarSide * step);
+    };
+    const bool ahead = is_open(1.0);
+    cell.one_sided = ahead != is_open(-1.0);
+    if (cell.one_sided && !ahead) cell.normal = -cell.normal;
+  }
 }
 
 const SurfaceCell* SurfaceLevel::nearest(const Eigen::Vector3d& p) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -13,9 +14,15 @@ namespace concord {
 /// What lies in one cell: a flat piece of surface, or something that is none.
 struct SurfaceCell {
   Eigen::Vector3f mean;    ///< of the points in the cell, metres
-  Eigen::Vector3f normal;  ///< unit length, either sign; zero where the points around are no plane
+  Eigen::Vector3f normal;  ///< unit length; zero where the points around are no plane
+  bool one_sided = false;  ///< free space lies on one side only, and the normal points there; else either sign
   [[nodiscard]] bool is_flat() const { return !normal.isZero(0.0F); }
 };
+
+/// Whether both are seen from one side, and not from the same: the two faces of a wall, a floor and a ceiling.
+[[nodiscard]] inline bool back_to_back(const SurfaceCell& a, const SurfaceCell& b, double cosine) {
+  return a.one_sided && b.one_sided && cosine < 0.0;
+}
 
 /// Number, sum and sum of outer products (xx, xy, xz, yy, yz, zz) of points: sums of these are those of the union.
 struct Moments {
@@ -37,6 +44,8 @@ class SurfaceLevel {
 
   [[nodiscard]] double size() const { return size_; }
   [[nodiscard]] const std::vector<SurfaceCell>& cells() const { return cells_; }
+  /// Turns the normals of cells that `is_free` on one side only.
+  void orient(const std::function<bool(const Eigen::Vector3d&)>& is_free);
   /// The cell with the nearest mean among the eight whose centres are nearest; none: null. It finds whatever lies
   /// within size / 2, and nothing beyond 2.6 size.
   [[nodiscard]] const SurfaceCell* nearest(const Eigen::Vector3d& p) const;

@@ -25,7 +25,7 @@ struct WallColumn {
 class WallGrid {
  public:
   static constexpr int kWall = 120;
-  static constexpr int kOpen = -40;
+  static constexpr int kOpen = -100;
   static constexpr int kLevels = 6;
 
   WallGrid(const AlignMap& map, const Eigen::Matrix3d& R_upright_map, double cell);
