@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "align/column_search.hpp"
+#include "align/gates.hpp"
 #include "align/height_search.hpp"
 
 namespace concord {
@@ -11,23 +12,43 @@ namespace {
 
 // What a person's guess may be off by, with a margin: 2 m on each axis, 45 degrees of yaw.
 constexpr double kGuessYaw = 46.0 * M_PI / 180.0;
-constexpr double kGuessReach = 2.6;   // metres
-constexpr double kGuessHeight = 3.0;  // metres: less than a storey
+constexpr double kYawSlack = 1.0 * M_PI / 180.0;  // what refinement may add
+constexpr double kGuessReach = 2.6;               // metres
+constexpr double kGuessHeight = 3.0;              // metres: less than a storey
 /// A guess that is tilted by more than this means it: the source's frame is not upright. Less is a shaky hand.
 constexpr double kMeantTilt = 15.0 * M_PI / 180.0;
 constexpr double kAnyHeight = 50.0;
 
-constexpr std::size_t kPlaces = 8;
+constexpr std::size_t kPlaces = 24;
+constexpr std::size_t kQuickPoints = 800;
+constexpr int kQuickIterations = 8;
+constexpr std::size_t kQuickPieces = 1000;
+constexpr std::size_t kBestPlaces = 8;  // that are refined and judged with care
 constexpr std::size_t kRoughPoints = 3000;
 constexpr std::size_t kFinePoints = 8000;
 constexpr std::size_t kLastPoints = 20'000;
 constexpr std::size_t kMinLevelCells = 150;  // flat ones; a coarser level of a small room says nothing
 constexpr int kRoughIterations = 12;
 constexpr int kFineIterations = 20;
-constexpr std::size_t kJudgePieces = 3000;
+constexpr std::size_t kJudgePieces = 4000;
+constexpr double kApart = 0.25;  // metres
+constexpr double kTurnApart = 3.0 * M_PI / 180.0;
 
 std::size_t flat_count(const SurfaceLevel& level) {
   return std::count_if(level.cells().begin(), level.cells().end(), [](const SurfaceCell& c) { return c.is_flat(); });
+}
+
+/// Those cells of the source that come near the target under `T`, spread evenly, `most` at most.
+std::vector<SurfaceCell> cropped(const AlignMap& target, const SurfaceLevel& source, const Transform& T,
+                                 std::size_t most) {
+  std::vector<SurfaceCell> near;
+  for (const SurfaceCell& cell : source.cells()) {
+    if (target.levels.back().nearest(T * cell.mean.cast<double>()) != nullptr) near.push_back(cell);
+  }
+  if (near.size() <= most) return near;
+  std::vector<SurfaceCell> out;
+  for (std::size_t i = 0; i < most; ++i) out.push_back(near[i * near.size() / most]);
+  return out;
 }
 
 /// One level: the source's cells of about the size of the target's against those.
@@ -39,21 +60,50 @@ void refine_level(const AlignMap& target, const SurfaceLevel& to, const SurfaceL
   result.iterations += before;
 }
 
-/// Coarse levels only, as far as both maps have them.
+/// The levels that both have, coarse to fine, down to the one next to the finest.
 GicpResult refine_roughly(const AlignMap& target, const AlignMap& source, const Transform& T, std::size_t points,
-                          int threads) {
+                          int iterations, int threads) {
   GicpResult result;
   result.T_target_source = T;
   const std::size_t levels = std::min(target.levels.size(), source.levels.size());
-  for (std::size_t i = 1; i <= levels; ++i) {
+  for (std::size_t i = 1; i <= std::min<std::size_t>(levels, 2); ++i) {
     const SurfaceLevel& to = target.levels[target.levels.size() - i];
     const SurfaceLevel& from = source.levels[source.levels.size() - i];
-    const bool last = i == levels || i == 2;
-    if (!last && std::min(flat_count(to), flat_count(from)) < kMinLevelCells) continue;
-    refine_level(target, to, from, points, kRoughIterations, threads, result);
-    if (last) break;
+    if (i < levels && i < 2 && std::min(flat_count(to), flat_count(from)) < kMinLevelCells) continue;
+    refine_level(target, to, from, points, iterations, threads, result);
   }
   return result;
+}
+
+/// The level next to the coarsest alone.
+Hypothesis look_quickly(const AlignMap& target, const AlignMap& source, const Transform& T, int threads) {
+  GicpResult result;
+  result.T_target_source = T;
+  const auto middle = [](const AlignMap& map) -> const SurfaceLevel& {
+    return map.levels[map.levels.size() >= 2 ? map.levels.size() - 2 : 0];
+  };
+  refine_level(target, middle(target), middle(source), kQuickPoints, kQuickIterations, threads, result);
+  return {result.T_target_source, support(target, source, result.T_target_source, kQuickPieces, threads),
+          result.iterations};
+}
+
+/// Best first; of those at one place the best.
+void sort_places(std::vector<Hypothesis>& places, const Eigen::Vector3d& p_source_middle) {
+  std::stable_sort(places.begin(), places.end(),
+                   [](const Hypothesis& a, const Hypothesis& b) { return ranks_before(a.support, b.support); });
+  std::vector<Hypothesis> apart;
+  for (const Hypothesis& place : places) {
+    const auto is_same = [&](const Hypothesis& other) {
+      return !are_apart(place.T_target_source, other.T_target_source, p_source_middle);
+    };
+    if (std::none_of(apart.begin(), apart.end(), is_same)) apart.push_back(place);
+  }
+  places = std::move(apart);
+}
+
+bool is_near_guess(const Transform& T, const Transform& guess) {
+  const Eigen::Matrix3d R = T.linear() * guess.linear().transpose();
+  return std::abs(std::atan2(R(1, 0) - R(0, 1), R(0, 0) + R(1, 1))) <= kGuessYaw + kYawSlack;
 }
 
 struct UprightPair {
@@ -78,10 +128,7 @@ UprightPair make_upright(const AlignMap& target, const AlignMap& source, const s
 /// How far to lift the source: anywhere, or near where a guess has its middle or its origin.
 std::pair<double, double> height_window(const UprightPair& pair, const AlignMap& source) {
   if (!pair.guess) return {-kAnyHeight, kAnyHeight};
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  const std::vector<SurfaceCell>& cells = source.levels.back().cells();
-  for (const SurfaceCell& cell : cells) middle += cell.mean.cast<double>();
-  middle = pair.source * middle / static_cast<double>(cells.size());
+  const Eigen::Vector3d middle = pair.source * middle_of(source);
   const double at_origin = pair.guess->translation().z();
   const double at_middle = (*pair.guess * middle).z() - middle.z();
   return {std::min(at_origin, at_middle) - kGuessHeight, std::max(at_origin, at_middle) + kGuessHeight};
@@ -109,32 +156,49 @@ std::vector<Transform> places(const AlignMap& target, const AlignMap& source, co
 
 }  // namespace
 
-std::vector<SurfaceCell> cropped(const AlignMap& target, const SurfaceLevel& source, const Transform& T,
-                                 std::size_t most) {
-  std::vector<SurfaceCell> near;
-  for (const SurfaceCell& cell : source.cells()) {
-    if (target.levels.back().nearest(T * cell.mean.cast<double>()) != nullptr) near.push_back(cell);
-  }
-  if (near.size() <= most) return near;
-  std::vector<SurfaceCell> out;
-  for (std::size_t i = 0; i < most; ++i) out.push_back(near[i * near.size() / most]);
-  return out;
+Eigen::Vector3d middle_of(const AlignMap& map) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  const std::vector<SurfaceCell>& cells = map.levels.back().cells();
+  for (const SurfaceCell& cell : cells) sum += cell.mean.cast<double>();
+  return cells.empty() ? sum : Eigen::Vector3d(sum / static_cast<double>(cells.size()));
+}
+
+bool are_apart(const Transform& a, const Transform& b, const Eigen::Vector3d& p_source_middle) {
+  return (a * p_source_middle - b * p_source_middle).norm() > kApart ||
+         Eigen::AngleAxisd(Eigen::Matrix3d(a.linear().transpose() * b.linear())).angle() > kTurnApart;
 }
 
 std::vector<Hypothesis> find_hypotheses(const AlignMap& target, const AlignMap& source,
                                         const std::optional<Transform>& guess, int threads) {
+  const Eigen::Vector3d middle = middle_of(source);
   std::vector<Hypothesis> all;
   for (const Transform& place : places(target, source, guess, threads)) {
-    const GicpResult result = refine_roughly(target, source, place, kRoughPoints, threads);
-    const double score = support(target, source, result.T_target_source, kJudgePieces, threads).score();
-    all.push_back({result.T_target_source, score, result.iterations});
+    all.push_back(look_quickly(target, source, place, threads));
   }
-  std::stable_sort(all.begin(), all.end(), [](const Hypothesis& a, const Hypothesis& b) { return a.score > b.score; });
+  sort_places(all, middle);
+  if (all.size() > kBestPlaces) all.resize(kBestPlaces);
+  for (Hypothesis& h : all) {
+    const GicpResult result =
+        refine_roughly(target, source, h.T_target_source, kRoughPoints, kRoughIterations, threads);
+    h.T_target_source = result.T_target_source;
+    h.iterations += result.iterations;
+    h.support = support(target, source, h.T_target_source, kJudgePieces, threads);
+  }
+  if (guess) std::erase_if(all, [&](const Hypothesis& h) { return !is_near_guess(h.T_target_source, *guess); });
+  sort_places(all, middle);
   return all;
 }
 
 GicpResult refine_fully(const AlignMap& target, const AlignMap& source, const Transform& T, int threads) {
-  GicpResult result = refine_roughly(target, source, T, kFinePoints, threads);
+  const GicpResult rough = refine_roughly(target, source, T, kFinePoints, kRoughIterations, threads);
+  GicpResult result = refine_finely(target, source, rough.T_target_source, threads);
+  result.iterations += rough.iterations;
+  return result;
+}
+
+GicpResult refine_finely(const AlignMap& target, const AlignMap& source, const Transform& T, int threads) {
+  GicpResult result;
+  result.T_target_source = T;
   refine_level(target, target.fine(), source.fine(), kFinePoints, kFineIterations, threads, result);
   std::vector<SurfaceCell> points;
   const std::size_t stride = std::max<std::size_t>(1, source.points.size() / kLastPoints);

@@ -12,19 +12,22 @@ namespace concord {
 /// A place for the source, refined as far as telling places apart needs.
 struct Hypothesis {
   Transform T_target_source = Transform::Identity();
-  double score = 0.0;  ///< see Support
+  Support support;
   int iterations = 0;
 };
 
-/// The places worth judging, best first, no two the same: from the columns of walls, and the guess itself.
+/// The places worth judging, best first, each once: from the columns of walls, and the guess itself. With a guess, none
+/// that is farther from it than people's guesses are.
 [[nodiscard]] std::vector<Hypothesis> find_hypotheses(const AlignMap& target, const AlignMap& source,
                                                       const std::optional<Transform>& guess, int threads);
 
-/// Those cells of the source that come near the target under `T`, spread evenly, `most` at most.
-[[nodiscard]] std::vector<SurfaceCell> cropped(const AlignMap& target, const SurfaceLevel& source, const Transform& T,
-                                               std::size_t most);
-
 /// Through all levels, coarse to fine, and to the resolution of the source.
 [[nodiscard]] GicpResult refine_fully(const AlignMap& target, const AlignMap& source, const Transform& T, int threads);
+/// From the finest level on: for what is right to within some voxels.
+[[nodiscard]] GicpResult refine_finely(const AlignMap& target, const AlignMap& source, const Transform& T, int threads);
+
+[[nodiscard]] Eigen::Vector3d middle_of(const AlignMap& map);
+/// Whether two transforms put the source to places that people would tell apart.
+[[nodiscard]] bool are_apart(const Transform& a, const Transform& b, const Eigen::Vector3d& p_source_middle);
 
 }  // namespace concord

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "align/evidence.hpp"
+
+namespace concord {
+
+enum class AlignReason {
+  kAccepted,
+  kNoMap,       ///< too little surface in one of the two
+  kLowOverlap,  ///< too little of either lies on the other
+  kDiverged,    ///< the two contradict each other where refinement ended
+  kDegenerate,  ///< the surfaces leave a direction open
+  kAmbiguous,   ///< another place explains the two as well
+};
+/// As it travels, e.g. "LOW_OVERLAP".
+[[nodiscard]] const char* name(AlignReason reason);
+
+/// Surface points below which a map is none: two square metres at 10 cm.
+inline constexpr std::size_t kMinSurfacePoints = 200;
+
+/// What a place must show to be believed, were it the only one: kAccepted, kLowOverlap, kDegenerate or kDiverged.
+[[nodiscard]] AlignReason check_gates(const Support& support);
+
+/// Whether a place speaks against another one that passed the gates: enough overlap and too little against it, however
+/// loosely it is held.
+[[nodiscard]] bool is_plausible(const Support& support);
+
+/// Which of two places to look at first: those with enough overlap, then by score.
+[[nodiscard]] bool ranks_before(const Support& a, const Support& b);
+
+/// The directions, in words, in which a place is held too little; none: held.
+[[nodiscard]] std::vector<std::string> loose_directions(const Support& support);
+
+}  // namespace concord
