@@ -16,13 +16,14 @@ bool has_map(const AlignMap& map) { return map.points.size() >= kMinSurfacePoint
 
 /// Slides the source along the ground from where it was found: a place that passes the gates as well says that it is
 /// not held.
-void probe_slides(const AlignMap& target, const AlignMap& source, const Support& best, int threads, Alignment& out) {
+void probe_slides(const AlignMap& target, const AlignMap& source, const Support& best, Origin origin, int threads,
+                  Alignment& out) {
   const Eigen::Vector2d weak = best.least_held().first;
   for (const Eigen::Vector2d& axis : {weak, Eigen::Vector2d(-weak.y(), weak.x())}) {
     for (const double step : {-2.0, -1.0, -0.5, 0.5, 1.0, 2.0}) {
       Transform T = out.T_target_source;
       T.translation().head<2>() += step * axis;
-      if (check_gates(support(target, source, T, kRivalPieces, threads)) != AlignReason::kAccepted) continue;
+      if (check_gates(support(target, source, T, kRivalPieces, threads), origin) != AlignReason::kAccepted) continue;
       out.T_target_source_rival = T;
       out.loose.push_back(name_slide({axis.x(), axis.y(), 0.0}));
       break;
@@ -30,7 +31,8 @@ void probe_slides(const AlignMap& target, const AlignMap& source, const Support&
   }
 }
 
-void judge(const AlignMap& target, const AlignMap& source, const GicpResult& fine, int threads, Alignment& out) {
+void judge(const AlignMap& target, const AlignMap& source, const GicpResult& fine, Origin origin, int threads,
+           Alignment& out) {
   out.T_target_source = fine.T_target_source;
   out.rms = fine.rms;
   out.covariance = covariance(fine);
@@ -43,10 +45,10 @@ void judge(const AlignMap& target, const AlignMap& source, const GicpResult& fin
   const double all = s.upright().all + s.level().all;
   out.free_space_violation = all > 0.0 ? (s.upright().contradicted + s.level().contradicted) / all : 0.0;
   out.score = s.score();
-  out.loose = loose_directions(s);
-  out.reason = check_gates(s);
+  out.loose = loose_directions(s, origin);
+  out.reason = check_gates(s, origin);
   if (!out.accepted()) return;
-  probe_slides(target, source, s, threads, out);
+  probe_slides(target, source, s, origin, threads, out);
   if (!out.loose.empty()) out.reason = AlignReason::kDegenerate;
 }
 
@@ -62,7 +64,9 @@ Alignment align(const AlignMap& target, const AlignMap& source, const std::optio
     out.reason = AlignReason::kLowOverlap;
     return out;
   }
-  judge(target, source, refine_fully(target, source, hypotheses.front().T_target_source, threads), threads, out);
+  const Origin origin = guess ? Origin::kGuess : Origin::kAnywhere;
+  judge(target, source, refine_fully(target, source, hypotheses.front().T_target_source, threads), origin, threads,
+        out);
   if (!out.accepted()) return out;
   const Eigen::Vector3d p_source = middle_of(source);
   for (const Hypothesis& h : hypotheses) {
@@ -78,7 +82,7 @@ Alignment recheck(const AlignMap& target, const AlignMap& source, const Transfor
   Alignment out;
   if (!has_map(target) || !has_map(source)) return out;
   out.hypotheses = 1;
-  judge(target, source, refine_finely(target, source, T_target_source, threads), threads, out);
+  judge(target, source, refine_finely(target, source, T_target_source, threads), Origin::kGuess, threads, out);
   return out;
 }
 

@@ -20,6 +20,7 @@ constexpr double kSameFacing = 0.8;  // cosine of 37 degrees
 constexpr double kAcross = 0.75;
 /// From the nearest surface, in cells: nearer than that nothing is contradicted, as poses drift and edges fray.
 constexpr double kClear = 1.5;
+constexpr double kTouch = 1.0;    // cells: how near a solid piece must be to anything
 constexpr double kAgainst = 4.0;  // see Support::score
 
 constexpr double kPairsPerMeasurement = 10.0;
@@ -46,6 +47,7 @@ Answer answer(const AlignMap& map, const Eigen::Vector3d& p, const Eigen::Vector
   if (nearest != nullptr) {
     const Eigen::Vector3d d = nearest->mean.cast<double>() - p;
     if (d.norm() < kClear * size) {
+      if (piece.is_solid) return d.norm() < kTouch * size ? Answer::kMatched : Answer::kNothing;
       if (!nearest->is_flat()) return Answer::kNothing;
       const Eigen::Vector3d m = nearest->normal.cast<double>();
       const double across = std::abs(m.dot(d));
@@ -65,7 +67,7 @@ Asked ask(const AlignMap& map, const SurfaceLevel& other, const Transform& T, st
   const double area = other.size() * other.size() * static_cast<double>(stride);
   for (std::size_t i = begin; i < end; ++i) {
     const SurfaceCell& piece = other.cells()[i * stride];
-    if (!piece.is_flat()) continue;
+    if (!piece.is_flat() && !piece.is_solid) continue;
     const bool is_upright = std::abs(piece.normal.z()) < kUprightNormalZ;
     Verdicts& verdicts = is_upright ? out.upright : out.level;
     verdicts.all += area;
@@ -74,7 +76,12 @@ Asked ask(const AlignMap& map, const SurfaceLevel& other, const Transform& T, st
     if (said == Answer::kNothing) continue;
     const bool matched = said == Answer::kMatched;
     (matched ? verdicts.matched : said == Answer::kDisplaced ? verdicts.displaced : verdicts.contradicted) += area;
-    if (is_upright) (matched ? out.matched : out.against) += area * n.head<2>() * n.head<2>().transpose();
+    if (piece.is_solid) {
+      // It holds nothing: an edge may slide along itself. But where it should not be it speaks in all directions.
+      if (!matched) out.against += 0.5 * area * Eigen::Matrix2d::Identity();
+    } else if (is_upright) {
+      (matched ? out.matched : out.against) += area * n.head<2>() * n.head<2>().transpose();
+    }
   }
   return out;
 }

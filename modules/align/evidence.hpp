@@ -10,8 +10,8 @@
 
 namespace concord {
 
-/// What one map says of the surface of the other, square metres. Only flat pieces are asked: what is no plane is noise
-/// as often as not.
+/// What one map says of the surface of the other, square metres. Flat pieces are asked, and solid ones, which
+/// count as upright; what is neither is noise as often as not.
 struct Verdicts {
   double all = 0.0;           ///< of the surface asked
   double matched = 0.0;       ///< lies on a surface that faces the same way

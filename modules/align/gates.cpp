@@ -5,13 +5,25 @@
 namespace concord {
 namespace {
 
-constexpr double kMinOverlap = 0.30;
-constexpr double kMinHeld = 1.0;   // square metres of surface, both ways, that face a direction
+struct Gates {
+  double min_overlap;  ///< of the map that is covered better
+  double min_upright;  ///< square metres of walls that lie on walls, both ways
+  double min_held;     ///< square metres of them, both ways, that face a direction
+  double max_against;  ///< share against, of walls, where there are few of them
+  double
+      max_against_big;  ///< and where there are many: one piece of furniture is no longer all that tells places apart
+};
+constexpr Gates kWithGuess{0.30, 5.0, 1.0, 0.10, 0.10};
+constexpr Gates kWithoutGuess{0.40, 20.0, 3.0, 0.04, 0.10};
+constexpr double kManyWalls = 100.0;  // square metres, both ways
+
 constexpr double kMinScore = 0.5;  // square metres, see Support::score
-constexpr double kMaxUprightAgainst = 0.10;
-constexpr double kMaxUprightContradicted = 0.03;
+constexpr double kMaxContradicted = 0.03;
 constexpr double kMaxLevelAgainst = 0.15;
-constexpr double kPlausibleShare = 0.5;
+constexpr double kPlausibleAgainst = 0.05;
+constexpr double kPlausibleLevelAgainst = 0.08;
+
+const Gates& gates_for(Origin origin) { return origin == Origin::kGuess ? kWithGuess : kWithoutGuess; }
 
 double overlap(const Support& s) { return std::max(s.overlap_source(), s.overlap_target()); }
 
@@ -33,32 +45,36 @@ const char* name(AlignReason reason) {
   return "?";
 }
 
-AlignReason check_gates(const Support& s) {
-  if (overlap(s) < kMinOverlap) return AlignReason::kLowOverlap;
-  if (s.upright().share_against() > kMaxUprightAgainst || s.level().share_against() > kMaxLevelAgainst ||
-      contradicted_share(s.upright()) > kMaxUprightContradicted) {
+AlignReason check_gates(const Support& s, Origin origin) {
+  const Gates& gates = gates_for(origin);
+  const Verdicts upright = s.upright();
+  if (overlap(s) < gates.min_overlap || upright.matched < gates.min_upright) return AlignReason::kLowOverlap;
+  const double max_against = upright.matched < kManyWalls ? gates.max_against : gates.max_against_big;
+  if (upright.share_against() > max_against || s.level().share_against() > kMaxLevelAgainst ||
+      contradicted_share(upright) > kMaxContradicted) {
     return AlignReason::kDiverged;
   }
-  if (!loose_directions(s).empty()) return AlignReason::kDegenerate;
+  if (!loose_directions(s, origin).empty()) return AlignReason::kDegenerate;
   return s.score() < kMinScore ? AlignReason::kDiverged : AlignReason::kAccepted;
 }
 
 bool is_plausible(const Support& s) {
-  return overlap(s) >= kMinOverlap && s.upright().share_against() <= kPlausibleShare * kMaxUprightAgainst &&
-         s.level().share_against() <= kPlausibleShare * kMaxLevelAgainst;
+  return overlap(s) >= kWithGuess.min_overlap && s.upright().share_against() <= kPlausibleAgainst &&
+         s.level().share_against() <= kPlausibleLevelAgainst;
 }
 
 bool ranks_before(const Support& a, const Support& b) {
-  const bool first = overlap(a) >= kMinOverlap;
-  const bool second = overlap(b) >= kMinOverlap;
+  const bool first = overlap(a) >= kWithGuess.min_overlap;
+  const bool second = overlap(b) >= kWithGuess.min_overlap;
   return first != second ? first : a.score() > b.score();
 }
 
-std::vector<std::string> loose_directions(const Support& s) {
+std::vector<std::string> loose_directions(const Support& s, Origin origin) {
+  const double least = gates_for(origin).min_held;
   std::vector<std::string> out;
   const auto [direction, held] = s.least_held();
-  if (held < kMinHeld) out.push_back(name_slide({direction.x(), direction.y(), 0.0}));
-  if (s.level().matched < kMinHeld) out.push_back(name_slide(Eigen::Vector3d::UnitZ()));
+  if (held < least) out.push_back(name_slide({direction.x(), direction.y(), 0.0}));
+  if (s.level().matched < least) out.push_back(name_slide(Eigen::Vector3d::UnitZ()));
   return out;
 }
 

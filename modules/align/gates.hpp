@@ -18,8 +18,11 @@ enum class AlignReason {
 /// Surface points below which a map is none: two square metres at 10 cm.
 inline constexpr std::size_t kMinSurfacePoints = 200;
 
+/// How a place came to be looked at. Among thousands of places some fit by chance: without a guess more is asked.
+enum class Origin { kGuess, kAnywhere };
+
 /// What a place must show to be believed, were it the only one: kAccepted, kLowOverlap, kDegenerate or kDiverged.
-[[nodiscard]] AlignReason check_gates(const Support& support);
+[[nodiscard]] AlignReason check_gates(const Support& support, Origin origin);
 
 /// Whether a place speaks against another one that passed the gates: enough overlap and too little against it, however
 /// loosely it is held.
@@ -29,6 +32,6 @@ inline constexpr std::size_t kMinSurfacePoints = 200;
 [[nodiscard]] bool ranks_before(const Support& a, const Support& b);
 
 /// The directions, in words, in which a place is held too little; none: held.
-[[nodiscard]] std::vector<std::string> loose_directions(const Support& support);
+[[nodiscard]] std::vector<std::string> loose_directions(const Support& support, Origin origin);
 
 }  // namespace concord

@@ -14,6 +14,9 @@ namespace {
 constexpr std::size_t kPointsPerChunk = 512;
 /// Variance across a surface over that along it (Segal 2009).
 constexpr double kFlatness = 1e-3;
+/// What a pair of solid cells counts for, against a pair of planes in the direction that they measure: enough to hold
+/// what no plane holds, too little to pull where planes do.
+constexpr double kSolid = 0.05;
 /// Steps below these end the search: far below what any map can show.
 constexpr double kMinStep = 2e-4;  // metres
 constexpr double kMinTurn = 2e-5;  // radians
@@ -77,7 +80,8 @@ class Linearisation {
       const Eigen::Vector3d n = partner->normal.cast<double>();
       const Eigen::Vector3d m = T.linear() * point.normal.cast<double>();
       if (back_to_back(*partner, point, n.dot(m))) continue;
-      const Eigen::Matrix3d M = information(n, m);
+      const bool both_solid = partner->is_solid && point.is_solid;
+      const Eigen::Matrix3d M = both_solid ? Eigen::Matrix3d(kSolid * Eigen::Matrix3d::Identity()) : information(n, m);
       const Eigen::Vector3d Md = M * d;
       const double squared = d.dot(Md);
       const double ratio = kernel / (kernel + squared);

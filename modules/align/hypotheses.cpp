@@ -204,9 +204,9 @@ GicpResult refine_finely(const AlignMap& target, const AlignMap& source, const T
   const std::size_t stride = std::max<std::size_t>(1, source.points.size() / kLastPoints);
   for (std::size_t i = 0; i < source.points.size(); i += stride) {
     const SurfaceCell* cell = source.fine().nearest(source.points[i].cast<double>());
-    if (cell == nullptr || !cell->is_flat()) continue;
+    if (cell == nullptr || (!cell->is_flat() && !cell->is_solid)) continue;
     if (target.levels.back().nearest(result.T_target_source * source.points[i].cast<double>()) == nullptr) continue;
-    points.push_back({source.points[i], cell->normal, cell->one_sided});
+    points.push_back({source.points[i], cell->normal, cell->one_sided, cell->is_solid});
   }
   const int before = result.iterations;
   const double kernel = std::max(target.resolution, 0.05);

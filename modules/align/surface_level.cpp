@@ -15,6 +15,11 @@ constexpr double kMinPlanePoints = 6.0;
 /// A plane is thin: its smallest variance is below this share of the middle one. Voxel centres on a slanted wall reach
 /// 0.06, an edge of two walls has 0.3 and more.
 constexpr double kMaxThickness = 0.15;
+/// What is no plane is solid when its cell has as many points as this share of the median flat one, and as many of the
+/// 27 cells around are taken: noise spread over a room reaches neither.
+constexpr double kMinSolidShare = 0.25;
+constexpr double kMinSolidPoints = 2.0;
+constexpr int kMinSolidNeighbours = 6;
 /// Where to look for free space on either side, in cells.
 constexpr double kNearSide = 2.0;
 constexpr double kFarSide = 3.5;
@@ -73,18 +78,37 @@ SurfaceLevel::SurfaceLevel(const SurfaceLevel& finer, double size, int threads) 
 
 void SurfaceLevel::find_planes(int threads) {
   cells_.resize(moments_.size());
+  std::vector<char> crowded(moments_.size());
   for_each_chunk(threads, chunks_of(cells_.size(), kCellsPerChunk), [&](std::size_t chunk) {
     const std::size_t end = std::min(cells_.size(), (chunk + 1) * kCellsPerChunk);
     for (std::size_t i = chunk * kCellsPerChunk; i < end; ++i) {
       const VoxelIndex at = table_.cells()[i];
       Moments around;
+      int neighbours = 0;
       for (int step = 0; step < 27; ++step) {
         const int found = table_.find({at.x + step % 3 - 1, at.y + step / 3 % 3 - 1, at.z + step / 9 - 1});
-        if (found >= 0) around.add(moments_[found]);
+        if (found < 0) continue;
+        around.add(moments_[found]);
+        ++neighbours;
       }
-      cells_[i] = {(moments_[i].sum / moments_[i].count).cast<float>(), normal_of(around), false};
+      cells_[i] = {(moments_[i].sum / moments_[i].count).cast<float>(), normal_of(around)};
+      crowded[i] = neighbours >= kMinSolidNeighbours;
     }
   });
+  find_solids(crowded);
+}
+
+void SurfaceLevel::find_solids(const std::vector<char>& crowded) {
+  std::vector<double> counts;
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    if (cells_[i].is_flat()) counts.push_back(moments_[i].count);
+  }
+  if (counts.empty()) return;
+  std::nth_element(counts.begin(), counts.begin() + counts.size() / 2, counts.end());
+  const double least = std::max(kMinSolidPoints, kMinSolidShare * counts[counts.size() / 2]);
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    cells_[i].is_solid = !cells_[i].is_flat() && crowded[i] != 0 && moments_[i].count >= least;
+  }
 }
 
 void SurfaceLevel::orient(const std::function<bool(const Eigen::Vector3d&)>& is_free) {

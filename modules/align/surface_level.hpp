@@ -16,6 +16,7 @@ struct SurfaceCell {
   Eigen::Vector3f mean;    ///< of the points in the cell, metres
   Eigen::Vector3f normal;  ///< unit length; zero where the points around are no plane
   bool one_sided = false;  ///< free space lies on one side only, and the normal points there; else either sign
+  bool is_solid = false;   ///< no plane, but too dense for noise: furniture, edges
   [[nodiscard]] bool is_flat() const { return !normal.isZero(0.0F); }
 };
 
@@ -52,6 +53,7 @@ class SurfaceLevel {
 
  private:
   void find_planes(int threads);
+  void find_solids(const std::vector<char>& crowded);
 
   double size_;
   CellTable table_;
