@@ -11,19 +11,21 @@ namespace {
 
 constexpr std::size_t kJudgePieces = 20'000;
 constexpr std::size_t kRivalPieces = 6000;
+/// Metres; the least is what would do harm.
+constexpr std::array<double, 8> kSlides{-0.3, 0.3, -0.6, 0.6, -1.0, 1.0, -2.0, 2.0};
 
 bool has_map(const AlignMap& map) { return map.points.size() >= kMinSurfacePoints; }
 
-/// Slides the source along the ground from where it was found: a place that passes the gates as well says that it is
-/// not held.
-void probe_slides(const AlignMap& target, const AlignMap& source, const Support& best, Origin origin, int threads,
-                  Alignment& out) {
-  const Eigen::Vector2d weak = best.least_held().first;
+/// Slides the source along the ground from where it was found: a place that is as good says that nothing holds it.
+void probe_slides(const AlignMap& target, const AlignMap& source, int threads, Alignment& out) {
+  const auto at = [&](const Transform& T) { return support(target, source, T, kRivalPieces, threads); };
+  const Support good = at(out.T_target_source);
+  const Eigen::Vector2d weak = good.weak_direction();
   for (const Eigen::Vector2d& axis : {weak, Eigen::Vector2d(-weak.y(), weak.x())}) {
-    for (const double step : {-2.0, -1.0, -0.5, 0.5, 1.0, 2.0}) {
+    for (const double step : kSlides) {
       Transform T = out.T_target_source;
       T.translation().head<2>() += step * axis;
-      if (check_gates(support(target, source, T, kRivalPieces, threads), origin) != AlignReason::kAccepted) continue;
+      if (!is_as_good(at(T), good)) continue;
       out.T_target_source_rival = T;
       out.loose.push_back(name_slide({axis.x(), axis.y(), 0.0}));
       break;
@@ -45,10 +47,10 @@ void judge(const AlignMap& target, const AlignMap& source, const GicpResult& fin
   const double all = s.upright().all + s.level().all;
   out.free_space_violation = all > 0.0 ? (s.upright().contradicted + s.level().contradicted) / all : 0.0;
   out.score = s.score();
-  out.loose = loose_directions(s, origin);
   out.reason = check_gates(s, origin);
+  if (out.reason == AlignReason::kDegenerate) out.loose.push_back(name_slide(Eigen::Vector3d::UnitZ()));
   if (!out.accepted()) return;
-  probe_slides(target, source, s, origin, threads, out);
+  probe_slides(target, source, threads, out);
   if (!out.loose.empty()) out.reason = AlignReason::kDegenerate;
 }
 

@@ -20,8 +20,10 @@ constexpr double kSameFacing = 0.8;  // cosine of 37 degrees
 constexpr double kAcross = 0.75;
 /// From the nearest surface, in cells: nearer than that nothing is contradicted, as poses drift and edges fray.
 constexpr double kClear = 1.5;
-constexpr double kTouch = 1.0;    // cells: how near a solid piece must be to anything
-constexpr double kAgainst = 4.0;  // see Support::score
+constexpr double kTouch = 1.0;  // cells: how near a solid piece must be to anything
+constexpr double kScoreAgainst = 10.0;
+constexpr double kContested = 4.0;
+constexpr double kContestedShare = 0.01;
 
 constexpr double kPairsPerMeasurement = 10.0;
 constexpr double kMinSigma = 0.01;  // metres across a surface: what a lattice can hide
@@ -128,13 +130,16 @@ Verdicts Support::level() const {
 double Support::overlap_source() const { return share(source_upright, source_level); }
 double Support::overlap_target() const { return share(target_upright, target_level); }
 
-double Support::score() const {
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(matched_facing - kAgainst * against_facing).eigenvalues()[0];
+double Support::score() const { return upright().matched - kScoreAgainst * upright().against(); }
+
+bool Support::is_contested() const {
+  const Eigen::Matrix2d net = matched_facing - kContested * against_facing;
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(net).eigenvalues()[0] <
+         -kContested * kContestedShare * upright().matched;
 }
 
-std::pair<Eigen::Vector2d, double> Support::least_held() const {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(matched_facing);
-  return {solver.eigenvectors().col(0), solver.eigenvalues()[0]};
+Eigen::Vector2d Support::weak_direction() const {
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(matched_facing).eigenvectors().col(0);
 }
 
 Support support(const AlignMap& target, const AlignMap& source, const Transform& T_target_source, std::size_t pieces,

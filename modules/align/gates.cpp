@@ -8,16 +8,17 @@ namespace {
 struct Gates {
   double min_overlap;  ///< of the map that is covered better
   double min_upright;  ///< square metres of walls that lie on walls, both ways
-  double min_held;     ///< square metres of them, both ways, that face a direction
   double max_against;  ///< share against, of walls, where there are few of them
   double
       max_against_big;  ///< and where there are many: one piece of furniture is no longer all that tells places apart
 };
-constexpr Gates kWithGuess{0.30, 5.0, 1.0, 0.10, 0.10};
-constexpr Gates kWithoutGuess{0.40, 20.0, 3.0, 0.04, 0.10};
+constexpr Gates kWithGuess{0.30, 5.0, 0.10, 0.10};
+constexpr Gates kWithoutGuess{0.40, 12.0, 0.04, 0.10};
 constexpr double kManyWalls = 100.0;  // square metres, both ways
 
-constexpr double kMinScore = 0.5;  // square metres, see Support::score
+constexpr double kMinLevel = 1.0;  // square metres of floor or ceiling that lie right, both ways
+constexpr double kMinRise = 1.0;   // square metres
+constexpr double kMinShareRise = 0.02;
 constexpr double kMaxContradicted = 0.03;
 constexpr double kMaxLevelAgainst = 0.15;
 constexpr double kPlausibleAgainst = 0.05;
@@ -54,8 +55,8 @@ AlignReason check_gates(const Support& s, Origin origin) {
       contradicted_share(upright) > kMaxContradicted) {
     return AlignReason::kDiverged;
   }
-  if (!loose_directions(s, origin).empty()) return AlignReason::kDegenerate;
-  return s.score() < kMinScore ? AlignReason::kDiverged : AlignReason::kAccepted;
+  if (s.level().matched < kMinLevel) return AlignReason::kDegenerate;
+  return s.is_contested() ? AlignReason::kDiverged : AlignReason::kAccepted;
 }
 
 bool is_plausible(const Support& s) {
@@ -69,13 +70,11 @@ bool ranks_before(const Support& a, const Support& b) {
   return first != second ? first : a.score() > b.score();
 }
 
-std::vector<std::string> loose_directions(const Support& s, Origin origin) {
-  const double least = gates_for(origin).min_held;
-  std::vector<std::string> out;
-  const auto [direction, held] = s.least_held();
-  if (held < least) out.push_back(name_slide({direction.x(), direction.y(), 0.0}));
-  if (s.level().matched < least) out.push_back(name_slide(Eigen::Vector3d::UnitZ()));
-  return out;
+bool is_as_good(const Support& slid, const Support& good) {
+  if (overlap(slid) < kWithGuess.min_overlap) return false;
+  const Verdicts there = slid.upright();
+  const Verdicts here = good.upright();
+  return there.against() < here.against() + kMinRise || there.share_against() < here.share_against() + kMinShareRise;
 }
 
 }  // namespace concord

@@ -31,7 +31,8 @@ enum class Origin { kGuess, kAnywhere };
 /// Which of two places to look at first: those with enough overlap, then by score.
 [[nodiscard]] bool ranks_before(const Support& a, const Support& b);
 
-/// The directions, in words, in which a place is held too little; none: held.
-[[nodiscard]] std::vector<std::string> loose_directions(const Support& support, Origin origin);
+/// Whether a place that was slid from a good one is as good: what speaks against it must rise by a fiftieth of what the
+/// maps can tell, and by a square metre, else nothing holds the source there.
+[[nodiscard]] bool is_as_good(const Support& slid, const Support& good);
 
 }  // namespace concord
