@@ -14,14 +14,20 @@ namespace {
 
 constexpr std::size_t kMaxColumns = 500;  // of the source, spread evenly
 constexpr std::size_t kMinColumns = 10;
-constexpr double kFineCell = 0.1;    // metres, for rooms
-constexpr double kCoarseCell = 0.2;  // for buildings
-constexpr double kRoomReach = 6.0;   // metres from its middle: up to here it is a room
+struct Scale {
+  double cell;         ///< metres
+  std::size_t most;    ///< places
+  double worst_share;  ///< of the best score: below it nothing is a rival
+};
+/// In a room walls say little and many places are cheap to look at; half of a room on half of it scores half of what a
+/// wrong place may. In a building walls say nearly all.
+constexpr Scale kRoom{0.1, 128, 0.2};
+constexpr Scale kBuilding{0.2, 32, 0.4};
+constexpr double kRoomReach = 6.0;  // metres from its middle: up to here it is a room
 constexpr double kMaxYawStep = 2.0 * M_PI / 180.0;
 constexpr std::size_t kBatch = 64;  // nodes opened together
 constexpr std::size_t kMaxNodes = 400'000;
-constexpr double kWorstShare = 0.5;  // of the best score: below it nothing is a rival
-constexpr double kSamePlace = 1.0;   // metres
+constexpr double kSamePlace = 5.0;  // cells
 constexpr double kSameYaw = 10.0 * M_PI / 180.0;
 constexpr int kTop = WallGrid::kLevels - 1;
 
@@ -43,15 +49,15 @@ class Search {
  public:
   Search(const AlignMap& target, const Eigen::Matrix3d& R_target, const AlignMap& source,
          const Eigen::Matrix3d& R_source, int threads)
-      : threads_(threads), cell_(cell_for(source, R_source)), grid_(target, R_target, cell_) {
+      : threads_(threads), scale_(scale_for(source, R_source)), cell_(scale_.cell), grid_(target, R_target, cell_) {
     take_columns(wall_columns(source, R_source, cell_));
   }
 
-  std::vector<PlanarPose> run(const SearchWindow& window, std::size_t most) {
+  std::vector<PlanarPose> run(const SearchWindow& window) {
     if (columns_.size() < kMinColumns || grid_.size().minCoeff() == 0) return {};
     turn(window);
     seed(window);
-    return open_best_first(most);
+    return open_best_first();
   }
 
  private:
@@ -63,7 +69,7 @@ class Search {
     std::int32_t x, y;
   };
 
-  static double cell_for(const AlignMap& source, const Eigen::Matrix3d& R) {
+  static Scale scale_for(const AlignMap& source, const Eigen::Matrix3d& R) {
     Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9);
     Eigen::Vector2d high = -low;
     for (const SurfaceCell& piece : source.levels.back().cells()) {
@@ -71,7 +77,7 @@ class Search {
       low = low.cwiseMin(p);
       high = high.cwiseMax(p);
     }
-    return (high - low).maxCoeff() < 2.0 * kRoomReach ? kFineCell : kCoarseCell;
+    return (high - low).maxCoeff() < 2.0 * kRoomReach ? kRoom : kBuilding;
   }
 
   void take_columns(std::vector<WallColumn> walls) {
@@ -169,22 +175,22 @@ class Search {
       if (std::abs(wrapped(yaws_[node.yaw] - yaws_[other.yaw])) > kSameYaw) continue;
       const int x = std::max(std::abs(node.x - other.x), std::abs(node.x + side - other.x));
       const int y = std::max(std::abs(node.y - other.y), std::abs(node.y + side - other.y));
-      if (std::hypot(x, y) * cell_ < kSamePlace) return true;
+      if (std::hypot(x, y) < kSamePlace) return true;
     }
     return false;
   }
 
-  std::vector<PlanarPose> open_best_first(std::size_t most) {
+  std::vector<PlanarPose> open_best_first() {
     std::vector<Node> taken;
     std::size_t opened = 0;
-    while (!open_.empty() && taken.size() < most && opened < kMaxNodes) {
+    while (!open_.empty() && taken.size() < scale_.most && opened < kMaxNodes) {
       std::vector<Node> batch;
-      while (!open_.empty() && batch.size() < kBatch && taken.size() < most) {
+      while (!open_.empty() && batch.size() < kBatch && taken.size() < scale_.most) {
         const Node node = open_.top();
         // A place is taken in order: not while a better one may come out of this batch.
         if (node.level == 0 && !batch.empty()) break;
         open_.pop();
-        if (!taken.empty() && node.bound < kWorstShare * taken.front().bound) {
+        if (!taken.empty() && node.bound < scale_.worst_share * taken.front().bound) {
           open_ = {};
           break;
         }
@@ -223,6 +229,7 @@ class Search {
   }
 
   int threads_;
+  Scale scale_;
   double cell_;
   WallGrid grid_;
   Eigen::Vector2d middle_ = Eigen::Vector2d::Zero();
@@ -237,8 +244,8 @@ class Search {
 
 std::vector<PlanarPose> search_columns(const AlignMap& target, const Eigen::Matrix3d& R_upright_target,
                                        const AlignMap& source, const Eigen::Matrix3d& R_upright_source,
-                                       const SearchWindow& window, std::size_t most, int threads) {
-  return Search(target, R_upright_target, source, R_upright_source, threads).run(window, most);
+                                       const SearchWindow& window, int threads) {
+  return Search(target, R_upright_target, source, R_upright_source, threads).run(window);
 }
 
 }  // namespace concord

@@ -22,7 +22,8 @@ struct SearchWindow {
   double reach = 0.0;              ///< metres to either side
 };
 
-/// The best places in the plane, best first, no two within a metre and ten degrees of each other.
+/// The best places in the plane, best first, no two within five cells of the search (0.5 m in a room, 1 m in a
+/// building) and ten degrees of each other.
 ///
 /// Branch and bound over yaw, x and y (Olson, ICRA 2009; Hess et al., ICRA 2016): the score of a place is the mean,
 /// over the source's wall columns, of what the target's picture shows there, and the largest value of a window bounds
@@ -31,6 +32,6 @@ struct SearchWindow {
 /// people may have turned it about.
 [[nodiscard]] std::vector<PlanarPose> search_columns(const AlignMap& target, const Eigen::Matrix3d& R_upright_target,
                                                      const AlignMap& source, const Eigen::Matrix3d& R_upright_source,
-                                                     const SearchWindow& window, std::size_t most, int threads);
+                                                     const SearchWindow& window, int threads);
 
 }  // namespace concord

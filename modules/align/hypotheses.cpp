@@ -19,7 +19,6 @@ constexpr double kGuessHeight = 3.0;              // metres: less than a storey
 constexpr double kMeantTilt = 15.0 * M_PI / 180.0;
 constexpr double kAnyHeight = 50.0;
 
-constexpr std::size_t kPlaces = 24;
 constexpr std::size_t kQuickPoints = 800;
 constexpr int kQuickIterations = 8;
 constexpr std::size_t kQuickPieces = 1000;
@@ -140,7 +139,7 @@ std::vector<Transform> places(const AlignMap& target, const AlignMap& source, co
   const auto [low, high] = height_window(pair, source);
   const SearchWindow window{pair.guess, kGuessYaw, kGuessReach};
   std::vector<Transform> out;
-  for (const PlanarPose& pose : search_columns(target, pair.target, source, pair.source, window, kPlaces, threads)) {
+  for (const PlanarPose& pose : search_columns(target, pair.target, source, pair.source, window, threads)) {
     Transform T = Transform::Identity();
     T.translation().head<2>() = pose.t;
     T.rotate(Eigen::AngleAxisd(pose.yaw, Eigen::Vector3d::UnitZ()));
