@@ -19,15 +19,6 @@ constexpr double kMinUprightCells = 100;
 /// With fewer free blocks than this for each cell of surface, a map was made without free space.
 constexpr double kMinFreeShare = 0.2;
 
-std::vector<SurfaceLevel> make_levels(const SurfacePoints& points, double resolution, int threads) {
-  std::vector<SurfaceLevel> levels;
-  levels.emplace_back(points, std::max(2.0 * resolution, kMinFineCell), threads);
-  for (const double size : {kMiddleCell, kCoarseCell}) {
-    if (size > 1.2 * levels.back().size()) levels.emplace_back(levels.back(), size, threads);
-  }
-  return levels;
-}
-
 Result<AlignMap> make(Result<SurfacePoints> points, double resolution, int threads) {
   if (!points) return tl::unexpected(points.error());
   AlignMap out;
@@ -53,6 +44,15 @@ tl::unexpected<Error> refuse_resolution(double resolution) {
 }
 
 }  // namespace
+
+std::vector<SurfaceLevel> make_levels(const SurfacePoints& points, double resolution, int threads) {
+  std::vector<SurfaceLevel> levels;
+  levels.emplace_back(points, std::max(2.0 * resolution, kMinFineCell), threads);
+  for (const double size : {kMiddleCell, kCoarseCell}) {
+    if (size > 1.4 * levels.back().size()) levels.emplace_back(levels.back(), size, threads);
+  }
+  return levels;
+}
 
 Eigen::Matrix3d upright(const SurfaceLevel& surface) {
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();

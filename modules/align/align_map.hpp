@@ -25,6 +25,9 @@ struct AlignMap {
   [[nodiscard]] const SurfaceLevel& fine() const { return levels.front(); }
 };
 
+/// Finest first, as AlignMap has them. @pre a resolution that make_align_map takes.
+[[nodiscard]] std::vector<SurfaceLevel> make_levels(const SurfacePoints& points, double resolution, int threads);
+
 /// Refused: see surface_points.
 [[nodiscard]] Result<AlignMap> make_align_map(const BrickMap& map, double resolution, int threads);
 /// A cloud; `resolution` is about the distance between its points. Refused: see surface_points; a resolution below

@@ -6,6 +6,7 @@
 #include <set>
 #include <tuple>
 
+#include "align/sampling.hpp"
 #include "align/wall_grid.hpp"
 #include "align/workers.hpp"
 
@@ -85,7 +86,7 @@ class Search {
     if (!walls.empty()) middle_ /= static_cast<double>(walls.size());
     const std::size_t take = std::min(walls.size(), kMaxColumns);
     for (std::size_t i = 0; i < take; ++i) {
-      const WallColumn& wall = walls[i * walls.size() / take];
+      const WallColumn& wall = walls[spread(i, take, walls.size())];
       columns_.push_back({wall.p.cast<double>() - middle_, 1 + static_cast<int>(3.0F * wall.height)});
       weight_ += columns_.back().weight;
     }

@@ -8,6 +8,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include "align/sampling.hpp"
 #include "align/workers.hpp"
 
 namespace concord {
@@ -64,11 +65,12 @@ Answer answer(const AlignMap& map, const Eigen::Vector3d& p, const Eigen::Vector
 }
 
 Asked ask(const AlignMap& map, const SurfaceLevel& other, const Transform& T, std::size_t begin, std::size_t end,
-          std::size_t stride) {
+          std::size_t count) {
   Asked out;
-  const double area = other.size() * other.size() * static_cast<double>(stride);
+  const double area =
+      other.size() * other.size() * static_cast<double>(other.cells().size()) / static_cast<double>(count);
   for (std::size_t i = begin; i < end; ++i) {
-    const SurfaceCell& piece = other.cells()[i * stride];
+    const SurfaceCell& piece = other.cells()[spread(i, count, other.cells().size())];
     if (!piece.is_flat() && !piece.is_solid) continue;
     const bool is_upright = std::abs(piece.normal.z()) < kUprightNormalZ;
     Verdicts& verdicts = is_upright ? out.upright : out.level;
@@ -90,12 +92,11 @@ Asked ask(const AlignMap& map, const SurfaceLevel& other, const Transform& T, st
 
 Asked ask_all(const AlignMap& map, const AlignMap& other, const Transform& T, std::size_t pieces, int threads) {
   const SurfaceLevel& surface = other.fine();
-  const std::size_t stride = std::max<std::size_t>(1, surface.cells().size() / std::max<std::size_t>(pieces, 1));
-  const std::size_t count = chunks_of(surface.cells().size(), stride);
+  const std::size_t count = std::min(surface.cells().size(), pieces);
   std::vector<Asked> parts(chunks_of(count, kPiecesPerChunk));
   for_each_chunk(threads, parts.size(), [&](std::size_t chunk) {
-    parts[chunk] =
-        ask(map, surface, T, chunk * kPiecesPerChunk, std::min(count, (chunk + 1) * kPiecesPerChunk), stride);
+    const std::size_t begin = chunk * kPiecesPerChunk;
+    parts[chunk] = ask(map, surface, T, begin, std::min(count, begin + kPiecesPerChunk), count);
   });
   Asked out;
   for (const Asked& part : parts) out.add(part);

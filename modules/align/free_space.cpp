@@ -1,6 +1,7 @@
 #include "align/free_space.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -16,7 +17,7 @@ constexpr int kMinFreeVoxels = 2;
 constexpr double kMaxChord = 10.0;  // metres between two surfaces that face each other
 constexpr double kFacing = 0.7;     // cosine between a chord and the normal where it ends
 constexpr double kHit = 0.87;       // cells from a mean: half the diagonal of a cell
-constexpr double kGap = 2.0;        // cells that are left open at either end
+constexpr int kGap = 2;             // cells that are left open at either end
 constexpr std::size_t kMaxChords = 60'000;
 constexpr std::size_t kChordsPerChunk = 256;
 constexpr double kFloorNormalZ = 0.95;
@@ -38,25 +39,49 @@ std::uint64_t free_blocks(const Brick& brick) {
   return out;
 }
 
-/// Blocks from a piece of surface along `direction` to the surface that it faces; none where it faces none.
-void walk(const SurfaceLevel& surface, const SurfaceCell& from, const Eigen::Vector3d& direction, double floor_limit,
-          std::vector<VoxelIndex>& out) {
-  const double size = surface.size();
-  const int steps = static_cast<int>(kMaxChord / size);
-  const Eigen::Vector3d start = from.mean.cast<double>();
-  int end = -1;
-  for (int i = 2; i <= steps && end < 0; ++i) {
-    const Eigen::Vector3d p = start + i * size * direction;
-    const SurfaceCell* hit = surface.nearest(p);
-    if (hit == nullptr || (hit->mean.cast<double>() - p).norm() > kHit * size) continue;
-    if (hit->is_flat() && std::abs(hit->normal.cast<double>().dot(direction)) < kFacing) return;
-    end = i;
+/// Every cell of a surface and those around it: outside of these `nearest` finds nothing.
+BlockSet surroundings(const SurfaceLevel& surface) {
+  BlockSet out;
+  for (const SurfaceCell& cell : surface.cells()) {
+    const VoxelIndex at = cell_of(cell.mean.cast<double>(), 1.0 / surface.size());
+    for (int step = 0; step < 27; ++step)
+      out.insert({at.x + step % 3 - 1, at.y + step / 3 % 3 - 1, at.z + step / 9 - 1});
   }
-  if (end < 0) end = static_cast<int>(floor_limit / size);  // 0 unless it stands on a floor
-  for (int i = static_cast<int>(kGap); i <= end - static_cast<int>(kGap); ++i) {
-    out.push_back(voxel_of(start + i * size * direction, size));
-  }
+  return out;
 }
+
+/// Walks from pieces of surface to what they face.
+class Walker {
+ public:
+  explicit Walker(const SurfaceLevel& surface) : surface_(surface), near_(surroundings(surface)) {}
+
+  /// Adds the blocks from a piece along `direction` to the surface that it faces; up to `limit` metres where it faces
+  /// none.
+  void walk(const SurfaceCell& from, const Eigen::Vector3d& direction, double limit,
+            std::vector<VoxelIndex>& out) const {
+    const double size = surface_.size();
+    const int steps = static_cast<int>(kMaxChord / size);
+    const Eigen::Vector3d start = from.mean.cast<double>();
+    std::array<VoxelIndex, kMaxSteps> passed;
+    int end = -1;
+    for (int i = kGap; i <= steps && end < 0; ++i) {
+      const Eigen::Vector3d p = start + i * size * direction;
+      passed[i] = cell_of(p, 1.0 / size);
+      if (!near_.contains(passed[i])) continue;
+      const SurfaceCell* hit = surface_.nearest(p);
+      if (hit == nullptr || (hit->mean.cast<double>() - p).norm() > kHit * size) continue;
+      if (hit->is_flat() && std::abs(hit->normal.cast<double>().dot(direction)) < kFacing) return;
+      end = i;
+    }
+    if (end < 0) end = static_cast<int>(limit / size);
+    out.insert(out.end(), passed.begin() + kGap, passed.begin() + std::max(kGap, end - kGap + 1));
+  }
+
+ private:
+  static constexpr int kMaxSteps = 128;
+  const SurfaceLevel& surface_;
+  BlockSet near_;
+};
 
 /// Level ground in the lower half of what is level: a ceiling is level as well, and nobody saw what is over it.
 double highest_floor(const SurfaceLevel& surface) {
@@ -77,11 +102,11 @@ double highest_floor(const SurfaceLevel& surface) {
 FreeSpace FreeSpace::known(const BrickMap& map, double resolution) {
   FreeSpace out;
   out.block_ = 2.0 * resolution;
+  out.per_metre_ = 1.0 / out.block_;
   for (const BrickIndex index : map.sorted_bricks()) {
     const std::uint64_t blocks = free_blocks(*map.find(index));
     if (blocks == 0) continue;
-    out.bricks_.insert({index.x, index.y, index.z});
-    out.blocks_.push_back(blocks);
+    out.blocks_.insert_brick({index.x, index.y, index.z}, blocks);
   }
   return out;
 }
@@ -89,6 +114,8 @@ FreeSpace FreeSpace::known(const BrickMap& map, double resolution) {
 FreeSpace FreeSpace::implied(const SurfaceLevel& surface, int threads) {
   FreeSpace out;
   out.block_ = surface.size();
+  out.per_metre_ = 1.0 / out.block_;
+  const Walker walker(surface);
   const std::vector<SurfaceCell>& cells = surface.cells();
   const std::size_t stride = 1 + cells.size() / kMaxChords;
   const std::size_t count = chunks_of(cells.size(), stride);
@@ -100,39 +127,30 @@ FreeSpace FreeSpace::implied(const SurfaceLevel& surface, int threads) {
       if (!cell.is_flat()) continue;
       const Eigen::Vector3d n = cell.normal.cast<double>();
       const bool is_floor = std::abs(n.z()) > kFloorNormalZ && cell.mean.z() < highest;
-      walk(surface, cell, n, is_floor && n.z() > 0.0 ? kPerson : 0.0, parts[chunk]);
-      walk(surface, cell, -n, is_floor && n.z() < 0.0 ? kPerson : 0.0, parts[chunk]);
+      walker.walk(cell, n, is_floor && n.z() > 0.0 ? kPerson : 0.0, parts[chunk]);
+      walker.walk(cell, -n, is_floor && n.z() < 0.0 ? kPerson : 0.0, parts[chunk]);
     }
   });
   for (const std::vector<VoxelIndex>& part : parts) {
-    for (const VoxelIndex& b : part) {
-      const auto brick = static_cast<std::size_t>(out.bricks_.insert({b.x >> 2, b.y >> 2, b.z >> 2}));
-      if (brick == out.blocks_.size()) out.blocks_.push_back(0);
-      out.blocks_[brick] |= std::uint64_t{1} << ((b.x & 3) | (b.y & 3) << 2 | (b.z & 3) << 4);
-    }
+    for (const VoxelIndex& b : part) out.blocks_.insert(b);
   }
   return out;
 }
 
-bool FreeSpace::contains(const Eigen::Vector3d& p) const {
-  if (blocks_.empty()) return false;
-  const VoxelIndex b = voxel_of(p, block_);
-  const int brick = bricks_.find({b.x >> 2, b.y >> 2, b.z >> 2});
-  return brick >= 0 && (blocks_[brick] >> ((b.x & 3) | (b.y & 3) << 2 | (b.z & 3) << 4) & 1) != 0;
-}
+bool FreeSpace::contains(const Eigen::Vector3d& p) const { return blocks_.contains(cell_of(p, per_metre_)); }
 
 std::size_t FreeSpace::block_count() const {
   std::size_t count = 0;
-  for (const std::uint64_t blocks : blocks_) count += std::popcount(blocks);
+  for (const std::uint64_t blocks : blocks_.words()) count += std::popcount(blocks);
   return count;
 }
 
 std::vector<FreeColumn> FreeSpace::columns() const {
   std::vector<FreeColumn> out;
-  for (std::size_t i = 0; i < blocks_.size(); ++i) {
-    const VoxelIndex at = bricks_.cells()[i];
+  for (std::size_t i = 0; i < blocks_.words().size(); ++i) {
+    const VoxelIndex at = blocks_.bricks()[i];
     for (int column = 0; column < 16; ++column) {
-      const int count = std::popcount(blocks_[i] >> column & 0x0001000100010001ULL);
+      const int count = std::popcount(blocks_.words()[i] >> column & 0x0001000100010001ULL);
       if (count == 0) continue;
       const Eigen::Vector3d p((at.x * 4 + (column & 3) + 0.5) * block_, (at.y * 4 + (column >> 2) + 0.5) * block_,
                               (at.z * 4 + 2.0) * block_);

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "align/cell_table.hpp"
+#include "align/block_set.hpp"
 #include "align/surface_level.hpp"
 #include "core/brick_map.hpp"
 
@@ -35,9 +35,9 @@ class FreeSpace {
   [[nodiscard]] std::size_t block_count() const;
 
  private:
-  double block_ = 0.0;                 // metres: two voxels, or a cell of a surface
-  CellTable bricks_;                   // 4 x 4 x 4 blocks
-  std::vector<std::uint64_t> blocks_;  // by brick, bit x + 4 y + 16 z
+  double block_ = 0.0;      // metres: two voxels, or a cell of a surface
+  double per_metre_ = 0.0;  // blocks
+  BlockSet blocks_;
 };
 
 }  // namespace concord

@@ -17,11 +17,9 @@ constexpr double kFlatness = 1e-3;
 /// What a pair of solid cells counts for, against a pair of planes in the direction that they measure: enough to hold
 /// what no plane holds, too little to pull where planes do.
 constexpr double kSolid = 0.05;
-/// Steps below these end the search: far below what any map can show.
-constexpr double kMinStep = 2e-4;  // metres
-constexpr double kMinTurn = 2e-5;  // radians
-constexpr double kMaxStep = 0.5;   // metres an iteration
-constexpr double kMaxTurn = 0.15;  // radians an iteration
+constexpr double kTurnPerStep = 0.1;  // radians a metre: metres at a lever arm of ten
+constexpr double kMaxStep = 0.5;      // metres an iteration
+constexpr double kMaxTurn = 0.15;     // radians an iteration
 /// Holds directions that nothing measures in place, relative to the best measured one.
 constexpr double kDamping = 1e-6;
 
@@ -33,6 +31,12 @@ struct Sums {
   double squares = 0.0;
   std::size_t pairs = 0;
 
+  void add_pair(const Eigen::Vector3d& p, double w, double squared) {
+    centre += w * p;
+    weight += w;
+    squares += w * squared;
+    ++pairs;
+  }
   void add(const Sums& other) {
     hessian += other.hessian;
     gradient += other.gradient;
@@ -43,12 +47,19 @@ struct Sums {
   }
 };
 
-/// Inverse of the summed covariances I - (1 - kFlatness) n n^T of two pieces of surface, times twice kFlatness: the
-/// squared length under it is, for parallel pieces, the squared distance across them.
-Eigen::Matrix3d information(const Eigen::Vector3d& n, const Eigen::Vector3d& m) {
-  const Eigen::Matrix3d sum =
-      2.0 * Eigen::Matrix3d::Identity() - (1.0 - kFlatness) * (n * n.transpose() + m * m.transpose());
-  return 2.0 * kFlatness * sum.inverse();
+/// Of two flat pieces with normals n and m, each with covariance I - (1 - kFlatness) n n^T: what their sum's inverse,
+/// times twice kFlatness, has along the bisector of the normals. All its other eigenvalues are below 2 kFlatness and
+/// are left out. 1 for parallel pieces, a half at 3.6 degrees.
+struct PlanePair {
+  Eigen::Vector3d bisector;
+  double information;
+};
+
+PlanePair plane_pair(const Eigen::Vector3d& n, const Eigen::Vector3d& m) {
+  const double cosine = n.dot(m);
+  const double along = 1.0 + std::abs(cosine);  // n n^T + m m^T has it along the bisector
+  const Eigen::Vector3d sum = cosine < 0.0 ? Eigen::Vector3d(n - m) : Eigen::Vector3d(n + m);
+  return {sum / std::sqrt(2.0 * along), 2.0 * kFlatness / (2.0 - (1.0 - kFlatness) * along)};
 }
 
 class Linearisation {
@@ -70,41 +81,55 @@ class Linearisation {
 
  private:
   Sums sum_of(std::span<const SurfaceCell> points, const Transform& T, const Eigen::Vector3d& pivot) const {
-    const double kernel = options_.kernel * options_.kernel;
     Sums out;
     for (const SurfaceCell& point : points) {
       const Eigen::Vector3d p = T * point.mean.cast<double>();
       const SurfaceCell* partner = target_.nearest(p);
       if (partner == nullptr) continue;
       const Eigen::Vector3d d = partner->mean.cast<double>() - p;
-      const Eigen::Vector3d n = partner->normal.cast<double>();
-      const Eigen::Vector3d m = T.linear() * point.normal.cast<double>();
-      if (back_to_back(*partner, point, n.dot(m))) continue;
-      const bool both_solid = partner->is_solid && point.is_solid;
-      const Eigen::Matrix3d M = both_solid ? Eigen::Matrix3d(kSolid * Eigen::Matrix3d::Identity()) : information(n, m);
-      const Eigen::Vector3d Md = M * d;
-      const double squared = d.dot(Md);
-      const double ratio = kernel / (kernel + squared);
-      const double w = ratio * ratio;
-      const Eigen::Vector3d arm = p - pivot;
-      // p moves by v + omega x arm: J = [-[arm]x, I], so J^T a = (arm x a, a).
-      Eigen::Matrix<double, 6, 3> JtM;
-      for (int c = 0; c < 3; ++c) {
-        JtM.col(c).head<3>() = arm.cross(M.col(c));
-        JtM.col(c).tail<3>() = M.col(c);
+      if (partner->is_solid && point.is_solid) {
+        add_solid(p, d, pivot, out);
+      } else if (partner->is_flat() && point.is_flat()) {
+        const Eigen::Vector3d n = partner->normal.cast<double>();
+        const Eigen::Vector3d m = T.linear() * point.normal.cast<double>();
+        if (!back_to_back(*partner, point, n.dot(m))) add_planes(p, d, plane_pair(n, m), pivot, out);
       }
-      JtM *= w;
-      Eigen::Matrix<double, 3, 3> cross;
-      cross << 0, -arm.z(), arm.y(), arm.z(), 0, -arm.x(), -arm.y(), arm.x(), 0;
-      out.hessian.leftCols<3>() -= JtM * cross;
-      out.hessian.rightCols<3>() += JtM;
-      out.gradient += JtM * d;
-      out.centre += w * p;
-      out.weight += w;
-      out.squares += w * squared;
-      ++out.pairs;
     }
     return out;
+  }
+
+  /// The Geman-McClure kernel's weight of a squared distance.
+  [[nodiscard]] double trust(double squared) const {
+    const double kernel = options_.kernel * options_.kernel;
+    const double ratio = kernel / (kernel + squared);
+    return ratio * ratio;
+  }
+
+  // p moves by v + omega x arm: along q that is (arm x q) omega + q v.
+
+  void add_planes(const Eigen::Vector3d& p, const Eigen::Vector3d& d, const PlanePair& planes,
+                  const Eigen::Vector3d& pivot, Sums& out) const {
+    const Eigen::Vector3d& q = planes.bisector;
+    const double across = q.dot(d);
+    const double squared = planes.information * across * across;
+    const double w = trust(squared);
+    Vector6 J;
+    J << (p - pivot).cross(q), q;
+    const Vector6 Jw = w * planes.information * J;
+    out.hessian += Jw * J.transpose();
+    out.gradient += across * Jw;
+    out.add_pair(p, w, squared);
+  }
+
+  void add_solid(const Eigen::Vector3d& p, const Eigen::Vector3d& d, const Eigen::Vector3d& pivot, Sums& out) const {
+    const double squared = kSolid * d.squaredNorm();
+    const double w = trust(squared);
+    const Eigen::Vector3d arm = p - pivot;
+    Eigen::Matrix<double, 3, 6> J;
+    J << 0, arm.z(), -arm.y(), 1, 0, 0, -arm.z(), 0, arm.x(), 0, 1, 0, arm.y(), -arm.x(), 0, 0, 0, 1;
+    out.hessian += w * kSolid * J.transpose() * J;
+    out.gradient += w * kSolid * J.transpose() * d;
+    out.add_pair(p, w, squared);
   }
 
   const SurfaceLevel& target_;
@@ -153,7 +178,7 @@ GicpResult refine(const SurfaceLevel& target, std::span<const SurfaceCell> sourc
     step *= scale;
     out.T_target_source = moved(out.T_target_source, step, out.p_target_centre);
     ++out.iterations;
-    out.converged = step.head<3>().norm() < kMinTurn && step.tail<3>().norm() < kMinStep;
+    out.converged = step.head<3>().norm() < kTurnPerStep * options.min_step && step.tail<3>().norm() < options.min_step;
     out.p_target_centre = sums.centre / sums.weight;
   }
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "align/sampling.hpp"
+
 namespace concord {
 namespace {
 
@@ -49,7 +51,7 @@ void vote(const std::vector<Eigen::Vector3d>& target, const std::vector<Eigen::V
   }
   const std::size_t take = std::min(source.size(), kMaxPieces);
   for (std::size_t i = 0; i < take; ++i) {
-    const Eigen::Vector3d p = T * source[i * source.size() / take];
+    const Eigen::Vector3d p = T * source[spread(i, take, source.size())];
     VoxelIndex at = voxel_of(p, kColumn);
     at.z = 0;
     const int column = table.find(at);

@@ -6,6 +6,7 @@
 #include "align/column_search.hpp"
 #include "align/gates.hpp"
 #include "align/height_search.hpp"
+#include "align/sampling.hpp"
 
 namespace concord {
 namespace {
@@ -24,11 +25,14 @@ constexpr int kQuickIterations = 8;
 constexpr std::size_t kQuickPieces = 1000;
 constexpr std::size_t kBestPlaces = 8;  // that are refined and judged with care
 constexpr std::size_t kRoughPoints = 3000;
-constexpr std::size_t kFinePoints = 8000;
-constexpr std::size_t kLastPoints = 20'000;
+constexpr std::size_t kFinePoints = 4000;
+constexpr std::size_t kLastPoints = 6000;
 constexpr std::size_t kMinLevelCells = 150;  // flat ones; a coarser level of a small room says nothing
 constexpr int kRoughIterations = 12;
-constexpr int kFineIterations = 20;
+constexpr int kFineIterations = 15;
+constexpr int kLastIterations = 15;
+constexpr double kRoughStep = 0.005;  // cells, where a finer level follows
+constexpr double kLastStep = 3e-4;    // metres
 constexpr std::size_t kJudgePieces = 4000;
 constexpr double kApart = 0.25;  // metres
 constexpr double kTurnApart = 3.0 * M_PI / 180.0;
@@ -46,7 +50,7 @@ std::vector<SurfaceCell> cropped(const AlignMap& target, const SurfaceLevel& sou
   }
   if (near.size() <= most) return near;
   std::vector<SurfaceCell> out;
-  for (std::size_t i = 0; i < most; ++i) out.push_back(near[i * near.size() / most]);
+  for (std::size_t i = 0; i < most; ++i) out.push_back(near[spread(i, most, near.size())]);
   return out;
 }
 
@@ -55,7 +59,11 @@ void refine_level(const AlignMap& target, const SurfaceLevel& to, const SurfaceL
                   int iterations, int threads, GicpResult& result) {
   const std::vector<SurfaceCell> source = cropped(target, from, result.T_target_source, points);
   const int before = result.iterations;
-  result = refine(to, source, result.T_target_source, {0.5 * to.size(), iterations, threads});
+  result = refine(to, source, result.T_target_source,
+                  {.kernel = 0.5 * to.size(),
+                   .max_iterations = iterations,
+                   .min_step = kRoughStep * to.size(),
+                   .threads = threads});
   result.iterations += before;
 }
 
@@ -200,16 +208,18 @@ GicpResult refine_finely(const AlignMap& target, const AlignMap& source, const T
   result.T_target_source = T;
   refine_level(target, target.fine(), source.fine(), kFinePoints, kFineIterations, threads, result);
   std::vector<SurfaceCell> points;
-  const std::size_t stride = std::max<std::size_t>(1, source.points.size() / kLastPoints);
-  for (std::size_t i = 0; i < source.points.size(); i += stride) {
-    const SurfaceCell* cell = source.fine().nearest(source.points[i].cast<double>());
+  const std::size_t take = std::min(source.points.size(), kLastPoints);
+  for (std::size_t i = 0; i < take; ++i) {
+    const Eigen::Vector3f& p = source.points[spread(i, take, source.points.size())];
+    const SurfaceCell* cell = source.fine().nearest(p.cast<double>());
     if (cell == nullptr || (!cell->is_flat() && !cell->is_solid)) continue;
-    if (target.levels.back().nearest(result.T_target_source * source.points[i].cast<double>()) == nullptr) continue;
-    points.push_back({source.points[i], cell->normal, cell->one_sided, cell->is_solid});
+    if (target.levels.back().nearest(result.T_target_source * p.cast<double>()) == nullptr) continue;
+    points.push_back({p, cell->normal, cell->one_sided, cell->is_solid});
   }
   const int before = result.iterations;
   const double kernel = std::max(target.resolution, 0.05);
-  result = refine(target.fine(), points, result.T_target_source, {kernel, kFineIterations, threads});
+  result = refine(target.fine(), points, result.T_target_source,
+                  {.kernel = kernel, .max_iterations = kLastIterations, .min_step = kLastStep, .threads = threads});
   result.iterations += before;
   return result;
 }

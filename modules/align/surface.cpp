@@ -61,7 +61,7 @@ Result<SurfacePoints> surface_points(const BrickMap& map, double resolution) {
       }
     }
     if (points.size() > kMaxSurfacePoints) {
-      return refuse(Code::kTooLarge, "over 20 million surface voxels; align a coarser copy of the map");
+      return refuse(Code::kTooLarge, "over 4 million surface voxels; align a coarser copy of the map");
     }
   }
   return points;
@@ -69,7 +69,7 @@ Result<SurfacePoints> surface_points(const BrickMap& map, double resolution) {
 
 Result<SurfacePoints> surface_points(std::span<const Eigen::Vector3f> cloud) {
   if (cloud.size() > kMaxSurfacePoints) {
-    return refuse(Code::kTooLarge, "over 20 million points; downsample the cloud");
+    return refuse(Code::kTooLarge, "over 4 million points; downsample the cloud");
   }
   for (const Eigen::Vector3f& p : cloud) {
     if (!p.allFinite()) return refuse(Code::kNotFinite, "a point is not finite");

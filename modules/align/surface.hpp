@@ -12,8 +12,8 @@
 namespace concord {
 
 /// A point farther from the origin than this is refused, as a transform is (make_transform).
-inline constexpr double kMaxSurfaceReach = 10'000.0;  // metres
-inline constexpr std::size_t kMaxSurfacePoints = 20'000'000;
+inline constexpr double kMaxSurfaceReach = 10'000.0;         // metres
+inline constexpr std::size_t kMaxSurfacePoints = 4'000'000;  ///< at worst 1.5 GB of cells
 /// The finest map that can be aligned: cells of twice this reach kMaxSurfaceReach.
 inline constexpr double kMinAlignResolution = 0.02;
 

@@ -57,19 +57,20 @@ void Moments::add(const Moments& other) {
   outer += other.outer;
 }
 
-SurfaceLevel::SurfaceLevel(std::span<const Eigen::Vector3f> points, double size, int threads) : size_(size) {
+SurfaceLevel::SurfaceLevel(std::span<const Eigen::Vector3f> points, double size, int threads)
+    : size_(size), per_metre_(1.0 / size) {
   for (const Eigen::Vector3f& point : points) {
     const Eigen::Vector3d p = point.cast<double>();
-    const auto cell = static_cast<std::size_t>(table_.insert(voxel_of(p, size)));
+    const auto cell = static_cast<std::size_t>(table_.insert(cell_of(p, per_metre_)));
     if (cell == moments_.size()) moments_.emplace_back();
     moments_[cell].add(p);
   }
   find_planes(threads);
 }
 
-SurfaceLevel::SurfaceLevel(const SurfaceLevel& finer, double size, int threads) : size_(size) {
+SurfaceLevel::SurfaceLevel(const SurfaceLevel& finer, double size, int threads) : size_(size), per_metre_(1.0 / size) {
   for (const Moments& moments : finer.moments_) {
-    const auto cell = static_cast<std::size_t>(table_.insert(voxel_of(moments.sum / moments.count, size)));
+    const auto cell = static_cast<std::size_t>(table_.insert(cell_of(moments.sum / moments.count, per_metre_)));
     if (cell == moments_.size()) moments_.emplace_back();
     moments_[cell].add(moments);
   }
@@ -85,8 +86,9 @@ void SurfaceLevel::find_planes(int threads) {
       const VoxelIndex at = table_.cells()[i];
       Moments around;
       int neighbours = 0;
+      CellTable::Cursor cursor(table_);
       for (int step = 0; step < 27; ++step) {
-        const int found = table_.find({at.x + step % 3 - 1, at.y + step / 3 % 3 - 1, at.z + step / 9 - 1});
+        const int found = cursor.find({at.x + step % 3 - 1, at.y + step / 3 % 3 - 1, at.z + step / 9 - 1});
         if (found < 0) continue;
         around.add(moments_[found]);
         ++neighbours;
@@ -126,12 +128,13 @@ void SurfaceLevel::orient(const std::function<bool(const Eigen::Vector3d&)>& is_
 }
 
 const SurfaceCell* SurfaceLevel::nearest(const Eigen::Vector3d& p) const {
-  const VoxelIndex low = voxel_of(p.array() - 0.5 * size_, size_);
+  const VoxelIndex low = cell_of(p.array() - 0.5 * size_, per_metre_);
   const Eigen::Vector3f q = p.cast<float>();
+  CellTable::Cursor cursor(table_);
   const SurfaceCell* best = nullptr;
   float least = 0.0F;
   for (int step = 0; step < 8; ++step) {
-    const int found = table_.find({low.x + (step & 1), low.y + (step >> 1 & 1), low.z + (step >> 2)});
+    const int found = cursor.find({low.x + (step & 1), low.y + (step >> 1 & 1), low.z + (step >> 2)});
     if (found < 0) continue;
     const float squared = (cells_[found].mean - q).squaredNorm();
     if (best == nullptr || squared < least) {

@@ -56,6 +56,7 @@ class SurfaceLevel {
   void find_solids(const std::vector<char>& crowded);
 
   double size_;
+  double per_metre_;
   CellTable table_;
   std::vector<Moments> moments_;  // as numbered by table_
   std::vector<SurfaceCell> cells_;

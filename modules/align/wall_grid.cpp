@@ -18,7 +18,7 @@ constexpr std::int64_t kMaxCells = 1 << 24;
 
 using Cell = std::pair<std::int32_t, std::int32_t>;  // y, x
 
-Cell cell_of(const Eigen::Vector3d& p, double cell) {
+Cell column_of(const Eigen::Vector3d& p, double cell) {
   const VoxelIndex v = voxel_of(p, cell);
   return {v.y, v.x};
 }
@@ -36,7 +36,7 @@ std::vector<WallColumn> wall_columns(const AlignMap& map, const Eigen::Matrix3d&
     const bool flat = piece.is_flat();
     if (flat && std::abs((R_upright_map * piece.normal.cast<double>()).z()) > kLevelNormalZ) continue;
     const Eigen::Vector3d p = R_upright_map * piece.mean.cast<double>();
-    Sum& sum = sums[cell_of(p, cell)];
+    Sum& sum = sums[column_of(p, cell)];
     const double weight = (flat ? 1.0 : kLooseShare) * area / cell;
     sum.p += weight * p.head<2>();
     sum.weight += weight;
