@@ -23,7 +23,7 @@ Result<AlignMap> make(Result<SurfacePoints> points, double resolution, int threa
   if (!points) return tl::unexpected(points.error());
   AlignMap out;
   out.resolution = resolution;
-  out.points = std::move(*points);
+  out.points = without_loners(std::move(*points), resolution, threads);
   out.levels = make_levels(out.points, resolution, threads);
   out.R_upright_map = upright(out.levels.size() > 1 ? out.levels[1] : out.levels[0]);
   return out;

@@ -13,7 +13,7 @@ struct Gates {
       max_against_big;  ///< and where there are many: one piece of furniture is no longer all that tells places apart
 };
 constexpr Gates kWithGuess{0.30, 5.0, 0.10, 0.10};
-constexpr Gates kWithoutGuess{0.40, 12.0, 0.04, 0.10};
+constexpr Gates kWithoutGuess{0.40, 12.0, 0.025, 0.10};
 constexpr double kManyWalls = 100.0;  // square metres, both ways
 
 constexpr double kMinLevel = 1.0;  // square metres of floor or ceiling that lie right, both ways

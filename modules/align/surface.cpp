@@ -1,7 +1,13 @@
 #include "align/surface.hpp"
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <string>
+
+#include "align/cell_table.hpp"
+#include "align/workers.hpp"
 
 namespace concord {
 namespace {
@@ -38,7 +44,37 @@ tl::unexpected<Error> refuse_reach() {
   return refuse(Code::kOutOfBounds, "a point is over 10 km from the origin; is the map in metres?");
 }
 
+constexpr std::size_t kPointsPerChunk = 4096;
+constexpr int kDense = 7;  // of the 27 voxels around a point of a wall 9 are taken
+constexpr int kLoner = 5;
+
 }  // namespace
+
+SurfacePoints without_loners(SurfacePoints points, double resolution, int threads) {
+  CellTable voxels;
+  for (const Eigen::Vector3f& p : points) voxels.insert(cell_of(p.cast<double>(), 1.0 / resolution));
+  std::vector<std::int8_t> crowd(points.size());
+  for_each_chunk(threads, chunks_of(points.size(), kPointsPerChunk), [&](std::size_t chunk) {
+    CellTable::Cursor cursor(voxels);
+    const std::size_t end = std::min(points.size(), (chunk + 1) * kPointsPerChunk);
+    for (std::size_t i = chunk * kPointsPerChunk; i < end; ++i) {
+      const VoxelIndex at = cell_of(points[i].cast<double>(), 1.0 / resolution);
+      for (int step = 0; step < 27; ++step) {
+        crowd[i] += cursor.find({at.x + step % 3 - 1, at.y + step / 3 % 3 - 1, at.z + step / 9 - 1}) >= 0 ? 1 : 0;
+      }
+    }
+  });
+  std::array<std::size_t, 28> counts{};
+  for (const std::int8_t c : crowd) ++counts[c];
+  std::size_t sparse = 0;
+  for (int c = 0; c < kDense; ++c) sparse += counts[c];
+  if (2 * sparse > points.size()) return points;
+  SurfacePoints out;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (crowd[i] >= kLoner) out.push_back(points[i]);
+  }
+  return out;
+}
 
 Result<SurfacePoints> surface_points(const BrickMap& map, double resolution) {
   if (!std::isfinite(resolution) || resolution < kMinAlignResolution) {

@@ -29,4 +29,8 @@ using SurfacePoints = std::vector<Eigen::Vector3f>;
 /// are the reader's to leave out), one beyond kMaxSurfaceReach (kOutOfBounds).
 [[nodiscard]] Result<SurfacePoints> surface_points(std::span<const Eigen::Vector3f> cloud);
 
+/// Leaves out points that stand alone in a dense surface: where the median point has 7 of the 27 voxels around it
+/// taken, as a wall has, those with fewer than 5 are noise. A sparse surface stays as it is.
+[[nodiscard]] SurfacePoints without_loners(SurfacePoints points, double resolution, int threads);
+
 }  // namespace concord
