@@ -8,7 +8,7 @@ enum class AlignReason {
   kAccepted,
   kNoMap,       ///< too little surface in one of the two
   kLowOverlap,  ///< too little of either lies on the other
-  kDiverged,    ///< the two contradict each other where refinement ended
+  kDiverged,    ///< refinement came to no end, or the two contradict each other there
   kDegenerate,  ///< the surfaces leave a direction open
   kAmbiguous,   ///< another place explains the two as well
 };

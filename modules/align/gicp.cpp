@@ -14,9 +14,10 @@ namespace {
 constexpr std::size_t kPointsPerChunk = 512;
 /// Variance across a surface over that along it (Segal 2009).
 constexpr double kFlatness = 1e-3;
-/// What a pair of solid cells counts for, against a pair of planes in the direction that they measure: enough to hold
-/// what no plane holds, too little to pull where planes do.
+/// What a pair of solid cells counts for, against a pair of planes in the direction that they measure, and what all of
+/// them together may: enough to hold what no plane holds, too little to hold back what planes pull.
 constexpr double kSolid = 0.05;
+constexpr double kSolidShare = 0.01;
 constexpr double kTurnPerStep = 0.1;  // radians a metre: metres at a lever arm of ten
 constexpr double kMaxStep = 0.5;      // metres an iteration
 constexpr double kMaxTurn = 0.15;     // radians an iteration
@@ -62,10 +63,21 @@ PlanePair plane_pair(const Eigen::Vector3d& n, const Eigen::Vector3d& m) {
   return {sum / std::sqrt(2.0 * along), 2.0 * kFlatness / (2.0 - (1.0 - kFlatness) * along)};
 }
 
+double solid_weight(std::span<const SurfaceCell> source) {
+  double flat = 0.0;
+  double solid = 0.0;
+  for (const SurfaceCell& cell : source) (cell.is_solid ? solid : flat) += 1.0;
+  return solid > 0.0 ? std::min(kSolid, kSolidShare * flat / solid) : kSolid;
+}
+
 class Linearisation {
  public:
   Linearisation(const SurfaceLevel& target, std::span<const SurfaceCell> source, const GicpOptions& options)
-      : target_(target), source_(source), options_(options), sums_(chunks_of(source.size(), kPointsPerChunk)) {}
+      : target_(target),
+        source_(source),
+        options_(options),
+        solid_(solid_weight(source)),
+        sums_(chunks_of(source.size(), kPointsPerChunk)) {}
 
   /// Rotations are about `p_target_pivot`.
   Sums at(const Transform& T, const Eigen::Vector3d& p_target_pivot) {
@@ -122,19 +134,20 @@ class Linearisation {
   }
 
   void add_solid(const Eigen::Vector3d& p, const Eigen::Vector3d& d, const Eigen::Vector3d& pivot, Sums& out) const {
-    const double squared = kSolid * d.squaredNorm();
+    const double squared = solid_ * d.squaredNorm();
     const double w = trust(squared);
     const Eigen::Vector3d arm = p - pivot;
     Eigen::Matrix<double, 3, 6> J;
     J << 0, arm.z(), -arm.y(), 1, 0, 0, -arm.z(), 0, arm.x(), 0, 1, 0, arm.y(), -arm.x(), 0, 0, 0, 1;
-    out.hessian += w * kSolid * J.transpose() * J;
-    out.gradient += w * kSolid * J.transpose() * d;
+    out.hessian += w * solid_ * J.transpose() * J;
+    out.gradient += w * solid_ * J.transpose() * d;
     out.add_pair(p, w, squared);
   }
 
   const SurfaceLevel& target_;
   std::span<const SurfaceCell> source_;
   const GicpOptions& options_;
+  double solid_;
   std::vector<Sums> sums_;
 };
 

@@ -29,10 +29,13 @@ constexpr std::size_t kFinePoints = 2500;
 constexpr std::size_t kLastPoints = 4000;
 constexpr std::size_t kMinLevelCells = 150;  // flat ones; a coarser level of a small room says nothing
 constexpr int kRoughIterations = 12;
-constexpr int kFineIterations = 15;
-constexpr int kLastIterations = 15;
-constexpr double kRoughStep = 0.005;  // cells, where a finer level follows
-constexpr double kLastStep = 3e-4;    // metres
+constexpr int kFineIterations = 40;
+constexpr int kLastIterations = 60;
+constexpr double kRoughStep = 0.005;   // cells, where a finer level follows
+constexpr double kMaxThickness = 0.2;  // cells
+constexpr double kMinKernel = 0.05;    // metres
+constexpr double kNoiseKernel = 3.0;   // standard deviations
+constexpr double kLastStep = 3e-4;     // metres
 constexpr std::size_t kJudgePieces = 4000;
 constexpr double kApart = 0.25;  // metres
 constexpr double kTurnApart = 3.0 * M_PI / 180.0;
@@ -203,22 +206,42 @@ GicpResult refine_fully(const AlignMap& target, const AlignMap& source, const Tr
   return result;
 }
 
+namespace {
+
+/// The finest level in whose cells surfaces are thin: where noise fills cells, the nearest one is near wherever the
+/// source lies, and says nothing.
+std::size_t finest_clean(const AlignMap& target, const AlignMap& source) {
+  const std::size_t levels = std::min(target.levels.size(), source.levels.size());
+  for (std::size_t i = 0; i + 1 < levels; ++i) {
+    const auto is_clean = [i](const AlignMap& map) {
+      return map.levels[i].thickness() < kMaxThickness * map.levels[i].size();
+    };
+    if (is_clean(target) && is_clean(source)) return i;
+  }
+  return levels >= 2 ? levels - 2 : 0;
+}
+
+}  // namespace
+
 GicpResult refine_finely(const AlignMap& target, const AlignMap& source, const Transform& T, int threads) {
   GicpResult result;
   result.T_target_source = T;
-  refine_level(target, target.fine(), source.fine(), kFinePoints, kFineIterations, threads, result);
+  const std::size_t finest = finest_clean(target, source);
+  const SurfaceLevel& to = target.levels[finest];
+  const SurfaceLevel& from = source.levels[finest];
+  refine_level(target, to, from, kFinePoints, kFineIterations, threads, result);
   std::vector<SurfaceCell> points;
   const std::size_t take = std::min(source.points.size(), kLastPoints);
   for (std::size_t i = 0; i < take; ++i) {
     const Eigen::Vector3f& p = source.points[spread(i, take, source.points.size())];
-    const SurfaceCell* cell = source.fine().nearest(p.cast<double>());
+    const SurfaceCell* cell = from.nearest(p.cast<double>());
     if (cell == nullptr || (!cell->is_flat() && !cell->is_solid)) continue;
     if (target.levels.back().nearest(result.T_target_source * p.cast<double>()) == nullptr) continue;
     points.push_back({p, cell->normal, cell->one_sided, cell->is_solid});
   }
   const int before = result.iterations;
-  const double kernel = std::max(target.resolution, 0.05);
-  result = refine(target.fine(), points, result.T_target_source,
+  const double kernel = std::max({target.resolution, kMinKernel, kNoiseKernel * to.thickness()});
+  result = refine(to, points, result.T_target_source,
                   {.kernel = kernel, .max_iterations = kLastIterations, .min_step = kLastStep, .threads = threads});
   result.iterations += before;
   return result;

@@ -1,6 +1,7 @@
 #include "align/surface_level.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <Eigen/Eigenvalues>
 
@@ -24,8 +25,13 @@ constexpr int kMinSolidNeighbours = 6;
 constexpr double kNearSide = 2.0;
 constexpr double kFarSide = 3.5;
 
-Eigen::Vector3f normal_of(const Moments& m) {
-  if (m.count < kMinPlanePoints) return Eigen::Vector3f::Zero();
+struct Plane {
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+  double thickness = 0.0;  // metres, standard deviation across
+};
+
+Plane plane_of(const Moments& m) {
+  if (m.count < kMinPlanePoints) return {};
   const Eigen::Vector3d mean = m.sum / m.count;
   Eigen::Matrix3d covariance;
   const auto& o = m.outer;
@@ -34,8 +40,8 @@ Eigen::Vector3f normal_of(const Moments& m) {
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.computeDirect(covariance);
   const Eigen::Vector3d variances = solver.eigenvalues();
-  if (!(variances[1] > 0.0) || variances[0] > kMaxThickness * variances[1]) return Eigen::Vector3f::Zero();
-  return solver.eigenvectors().col(0).normalized().cast<float>();
+  if (!(variances[1] > 0.0) || variances[0] > kMaxThickness * variances[1]) return {};
+  return {solver.eigenvectors().col(0).normalized().cast<float>(), std::sqrt(std::max(variances[0], 0.0))};
 }
 
 }  // namespace
@@ -80,6 +86,7 @@ SurfaceLevel::SurfaceLevel(const SurfaceLevel& finer, double size, int threads) 
 void SurfaceLevel::find_planes(int threads) {
   cells_.resize(moments_.size());
   std::vector<char> crowded(moments_.size());
+  std::vector<double> thickness(moments_.size());
   for_each_chunk(threads, chunks_of(cells_.size(), kCellsPerChunk), [&](std::size_t chunk) {
     const std::size_t end = std::min(cells_.size(), (chunk + 1) * kCellsPerChunk);
     for (std::size_t i = chunk * kCellsPerChunk; i < end; ++i) {
@@ -93,21 +100,30 @@ void SurfaceLevel::find_planes(int threads) {
         around.add(moments_[found]);
         ++neighbours;
       }
-      cells_[i] = {(moments_[i].sum / moments_[i].count).cast<float>(), normal_of(around)};
+      const Plane plane = plane_of(around);
+      cells_[i] = {(moments_[i].sum / moments_[i].count).cast<float>(), plane.normal};
+      thickness[i] = plane.thickness;
       crowded[i] = neighbours >= kMinSolidNeighbours;
     }
   });
   find_solids(crowded);
+  thickness_ = median_of_flat(thickness);
+}
+
+double SurfaceLevel::median_of_flat(const std::vector<double>& values) const {
+  std::vector<double> flat;
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    if (cells_[i].is_flat()) flat.push_back(values[i]);
+  }
+  if (flat.empty()) return 0.0;
+  std::nth_element(flat.begin(), flat.begin() + flat.size() / 2, flat.end());
+  return flat[flat.size() / 2];
 }
 
 void SurfaceLevel::find_solids(const std::vector<char>& crowded) {
   std::vector<double> counts;
-  for (std::size_t i = 0; i < cells_.size(); ++i) {
-    if (cells_[i].is_flat()) counts.push_back(moments_[i].count);
-  }
-  if (counts.empty()) return;
-  std::nth_element(counts.begin(), counts.begin() + counts.size() / 2, counts.end());
-  const double least = std::max(kMinSolidPoints, kMinSolidShare * counts[counts.size() / 2]);
+  for (const Moments& moments : moments_) counts.push_back(moments.count);
+  const double least = std::max(kMinSolidPoints, kMinSolidShare * median_of_flat(counts));
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     cells_[i].is_solid = !cells_[i].is_flat() && crowded[i] != 0 && moments_[i].count >= least;
   }

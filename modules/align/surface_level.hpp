@@ -45,6 +45,8 @@ class SurfaceLevel {
 
   [[nodiscard]] double size() const { return size_; }
   [[nodiscard]] const std::vector<SurfaceCell>& cells() const { return cells_; }
+  /// Metres across the median flat piece, one standard deviation: what is left of noise and lattice.
+  [[nodiscard]] double thickness() const { return thickness_; }
   /// Turns the normals of cells that `is_free` on one side only.
   void orient(const std::function<bool(const Eigen::Vector3d&)>& is_free);
   /// The cell with the nearest mean among the eight whose centres are nearest; none: null. It finds whatever lies
@@ -55,6 +57,9 @@ class SurfaceLevel {
   void find_planes(int threads);
   void find_solids(const std::vector<char>& crowded);
 
+  [[nodiscard]] double median_of_flat(const std::vector<double>& values) const;
+
+  double thickness_ = 0.0;
   double size_;
   double per_metre_;
   CellTable table_;
