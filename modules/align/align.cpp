@@ -49,10 +49,13 @@ void judge(const AlignMap& target, const AlignMap& source, const GicpResult& fin
   out.score = s.score();
   out.reason = check_gates(s, origin);
   if (out.reason == AlignReason::kDegenerate) out.loose.push_back(name_slide(Eigen::Vector3d::UnitZ()));
-  if (out.accepted() && !fine.converged) out.reason = AlignReason::kDiverged;
   if (!out.accepted()) return;
   probe_slides(target, source, threads, out);
-  if (!out.loose.empty()) out.reason = AlignReason::kDegenerate;
+  if (!out.loose.empty()) {
+    out.reason = AlignReason::kDegenerate;
+  } else if (!fine.converged) {
+    out.reason = AlignReason::kDiverged;
+  }
 }
 
 }  // namespace
