@@ -87,6 +87,7 @@ nlohmann::json race_all(const std::vector<Pair>& pairs, int rounds) {
   for (const auto& [key, value] : out.items()) {
     if (value.is_number()) std::printf("%s %.2f\n", key.c_str(), value.get<double>());
   }
+  std::fflush(stdout);
   return out;
 }
 
