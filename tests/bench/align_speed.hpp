@@ -29,7 +29,7 @@ struct Timing {
 
 [[nodiscard]] std::vector<Method> our_methods();
 [[nodiscard]] std::vector<Method> pcl_methods();
-/// Of small_gicp, where it was built beside (CMake: -DCONCORD_SMALL_GICP=folder); else none.
+/// Of small_gicp, where one is installed (CMake: -DCONCORD_PEER_SMALL_GICP=prefix); else none.
 [[nodiscard]] std::vector<Method> peer_methods();
 
 }  // namespace concord::bench
