@@ -8,7 +8,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "cloud_file.hpp"
+#include "cli/cloud_file.hpp"
 #include "core/octomap_reader.hpp"
 
 namespace concord::bench {
@@ -97,7 +97,8 @@ Scene load_scene(const fs::path& file, double cloud_resolution) {
     OctomapImport import = take(read_octomap_file(bytes, std::nullopt), file.string());
     return {file.filename().string(), import.resolution, {}, std::move(import.map)};
   }
-  return {file.filename().string(), cloud_resolution, read_cloud(file, 0.5 * cloud_resolution), {}};
+  return {
+      file.filename().string(), cloud_resolution, take(read_cloud(file, 0.5 * cloud_resolution), file.string()), {}};
 }
 
 AlignMap prepared(const Scene& scene, int threads) {
