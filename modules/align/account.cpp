@@ -21,4 +21,15 @@ AlignEvidence account_of(const Alignment& alignment, double ms) {
   return out;
 }
 
+AlignResult result_of(const AlignTask& task, const Alignment& alignment, double ms, std::int64_t utime) {
+  AlignResult out;
+  out.id = task.id;
+  out.target = task.target_agent;
+  out.source = task.used_source;
+  out.layers = task.used_layers;
+  out.evidence = account_of(alignment, ms);
+  out.utime = utime;
+  return out;
+}
+
 }  // namespace concord
