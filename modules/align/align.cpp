@@ -11,6 +11,8 @@ namespace {
 
 constexpr std::size_t kJudgePieces = 20'000;
 constexpr std::size_t kRivalPieces = 6000;
+constexpr int kSettleRounds = 2;
+constexpr double kSettleStep = 0.2;  // metres: twice what the kernel of the finest level heeds
 /// Metres; the least is what would do harm.
 constexpr std::array<double, 8> kSlides{-0.3, 0.3, -0.6, 0.6, -1.0, 1.0, -2.0, 2.0};
 
@@ -31,6 +33,37 @@ void probe_slides(const AlignMap& target, const AlignMap& source, int threads, A
       break;
     }
   }
+}
+
+/// Refinement may end beside the place: a wall that lies off by more than the kernel heeds pulls no longer. So where
+/// something speaks against a place its surroundings are tried, and what is better is gone on from.
+GicpResult settle(const AlignMap& target, const AlignMap& source, GicpResult fine, int threads) {
+  const auto at = [&](const GicpResult& result) {
+    return support(target, source, result.T_target_source, kRivalPieces, threads);
+  };
+  Support best = at(fine);
+  for (int round = 0; round < kSettleRounds; ++round) {
+    const Eigen::Vector2d weak = best.weak_direction();
+    const Eigen::Vector3d axes[] = {{weak.x(), weak.y(), 0.0}, {-weak.y(), weak.x(), 0.0}, Eigen::Vector3d::UnitZ()};
+    const GicpResult from = fine;
+    bool is_better = false;
+    for (const Eigen::Vector3d& axis : axes) {
+      for (const double step : {-kSettleStep, kSettleStep}) {
+        Transform T = from.T_target_source;
+        T.translation() += step * axis;
+        GicpResult tried = refine_finely(target, source, T, threads);
+        fine.iterations += tried.iterations;
+        const Support support = at(tried);
+        if (!ranks_before(support, best)) continue;
+        tried.iterations = fine.iterations;
+        fine = tried;
+        best = support;
+        is_better = true;
+      }
+    }
+    if (!is_better) break;
+  }
+  return fine;
 }
 
 void judge(const AlignMap& target, const AlignMap& source, const GicpResult& fine, Origin origin, int threads,
@@ -71,8 +104,12 @@ Alignment align(const AlignMap& target, const AlignMap& source, const std::optio
     return out;
   }
   const Origin origin = guess ? Origin::kGuess : Origin::kAnywhere;
-  judge(target, source, refine_fully(target, source, hypotheses.front().T_target_source, threads), origin, threads,
-        out);
+  const GicpResult fine = refine_fully(target, source, hypotheses.front().T_target_source, threads);
+  judge(target, source, fine, origin, threads, out);
+  if (out.reason == AlignReason::kDiverged) {
+    out.iterations -= fine.iterations;
+    judge(target, source, settle(target, source, fine, threads), origin, threads, out);
+  }
   if (!out.accepted()) return out;
   const Eigen::Vector3d p_source = middle_of(source);
   for (const Hypothesis& h : hypotheses) {

@@ -3,6 +3,7 @@
 namespace concord::test {
 namespace {
 
+constexpr double kNear = 0.08;  // metres: both are in voxels of 0.05
 const Transform kT_map_left = transform(10.0, 5.0, 0.0, 0.3);
 
 TEST_F(AlignStation, FindsAnAgentInTheMapAndSaysWhatItUsed) {
@@ -22,7 +23,7 @@ TEST_F(AlignStation, FindsAnAgentInTheMapAndSaysWhatItUsed) {
   ASSERT_EQ(result.layers.size(), 1U);
   EXPECT_EQ(result.layers[0].agent, "robot1");
   EXPECT_GT(result.layers[0].revision, 0);
-  EXPECT_LT(metres_off(result.evidence.T_target_source, kT_map_left * kT_left_right), 0.06);
+  EXPECT_LT(metres_off(result.evidence.T_target_source, kT_map_left * kT_left_right), kNear);
   EXPECT_TRUE(placements_.empty()) << "moved before anybody accepted it";
 }
 
@@ -66,7 +67,7 @@ TEST_F(AlignStation, TheFirstPairFoundsTheMapInTheTargetsFrame) {
   EXPECT_TRUE(answer.ok);
   ASSERT_EQ(placements_.size(), 2U);
   EXPECT_EQ(placements_[1].agent, "robot2");
-  EXPECT_LT(metres_off(placements_[1].T_map_agent, kT_left_right), 0.06);
+  EXPECT_LT(metres_off(placements_[1].T_map_agent, kT_left_right), kNear);
 }
 
 TEST_F(AlignStation, AnAgentFoundInAnotherLiesInTheMapWhereThatOneDoes) {
@@ -75,7 +76,7 @@ TEST_F(AlignStation, AnAgentFoundInAnotherLiesInTheMapWhereThatOneDoes) {
   align_by_hand("robot1", kT_map_left);
   ASSERT_TRUE(found(guess_of("a", "robot2", "robot1", kT_left_right)).ok);
   ASSERT_TRUE(accept("d", "a").ok);
-  EXPECT_LT(metres_off(placements_.at(0).T_map_agent, kT_map_left * kT_left_right), 0.06);
+  EXPECT_LT(metres_off(placements_.at(0).T_map_agent, kT_map_left * kT_left_right), kNear);
 }
 
 TEST_F(AlignStation, AnotherRoomIsRefusedAndCannotBeAccepted) {
@@ -162,7 +163,7 @@ TEST_F(AlignStation, AnAgentInTheMapIsNotComparedWithItself) {
   align_by_hand("robot1", kT_map_left);
   align_by_hand("robot2", kT_map_left * kT_left_right * transform(1.0, 0.5, 0, 0.2));
   ASSERT_TRUE(found(guess_of("a", "robot2", "", kT_map_left * kT_left_right)).ok);
-  EXPECT_LT(metres_off(results_.back().evidence.T_target_source, kT_map_left * kT_left_right), 0.06);
+  EXPECT_LT(metres_off(results_.back().evidence.T_target_source, kT_map_left * kT_left_right), kNear);
 }
 
 }  // namespace

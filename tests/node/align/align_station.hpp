@@ -63,13 +63,15 @@ class AlignStation : public ::testing::Test {
   }
   void run(std::int64_t microseconds = 2'000'000) { bus_.advance_to(bus_.now() + microseconds); }
 
-  Answer ask(const std::string& channel, const Bytes& bytes) {
+  /// The last answer to this id.
+  Answer ask(const std::string& channel, const Bytes& bytes, const std::string& id) {
     answers_.clear();
     bus_.publish(channel, bytes);
     bus_.deliver();
+    std::erase_if(answers_, [&](const Answer& answer) { return answer.id != id; });
     return answers_.empty() ? Answer{} : answers_.back();
   }
-  Answer request(const AlignRequest& request) { return ask("in/align", encode(request)); }
+  Answer request(const AlignRequest& request) { return ask("in/align", encode(request), request.id); }
   /// Asks until there is an answer.
   Answer found(const AlignRequest& wanted) {
     Answer answer = request(wanted);
@@ -91,7 +93,7 @@ class AlignStation : public ::testing::Test {
     return out;
   }
   Answer decide(const std::string& id, AlignDecision::Op op, const std::string& align_id) {
-    return ask("in/align_decision", encode(AlignDecision{id, "eva", op, align_id, bus_.now()}));
+    return ask("in/align_decision", encode(AlignDecision{id, "eva", op, align_id, bus_.now()}), id);
   }
   Answer accept(const std::string& id, const std::string& align_id) {
     return decide(id, AlignDecision::Op::kAccept, align_id);
