@@ -91,6 +91,21 @@ void judge(const AlignMap& target, const AlignMap& source, const GicpResult& fin
   }
 }
 
+/// Another place that explains the two as well. What refines to the answer is none: it was on its way there.
+void find_rival(const AlignMap& target, const AlignMap& source, const std::vector<Hypothesis>& hypotheses, int threads,
+                Alignment& out) {
+  const Eigen::Vector3d p_source = middle_of(source);
+  for (const Hypothesis& h : hypotheses) {
+    if (!are_apart(h.T_target_source, out.T_target_source, p_source) || !is_plausible(h.support)) continue;
+    const GicpResult rival = refine_fully(target, source, h.T_target_source, threads);
+    out.iterations += rival.iterations;
+    if (!are_apart(rival.T_target_source, out.T_target_source, p_source)) continue;
+    out.T_target_source_rival = rival.T_target_source;
+    out.reason = AlignReason::kAmbiguous;
+    return;
+  }
+}
+
 }  // namespace
 
 Alignment align(const AlignMap& target, const AlignMap& source, const std::optional<Transform>& guess, int threads) {
@@ -111,13 +126,7 @@ Alignment align(const AlignMap& target, const AlignMap& source, const std::optio
     judge(target, source, settle(target, source, fine, threads), origin, threads, out);
   }
   if (!out.accepted()) return out;
-  const Eigen::Vector3d p_source = middle_of(source);
-  for (const Hypothesis& h : hypotheses) {
-    if (!are_apart(h.T_target_source, out.T_target_source, p_source) || !is_plausible(h.support)) continue;
-    out.T_target_source_rival = h.T_target_source;
-    out.reason = AlignReason::kAmbiguous;
-    break;
-  }
+  find_rival(target, source, hypotheses, threads, out);
   return out;
 }
 
