@@ -59,4 +59,35 @@ std::string to_words(const AlignEvidence& evidence) {
          std::to_string(evidence.hypotheses) + " places, " + std::to_string(evidence.iterations) + " iterations";
 }
 
+nlohmann::json to_json(const AlignResult& result) {
+  const auto used = [](const AlignResult::Used& layer) {
+    return nlohmann::json{{"agent", layer.agent}, {"frame", layer.frame_id}, {"revision", layer.revision}};
+  };
+  nlohmann::json layers = nlohmann::json::array();
+  for (const AlignResult::Used& layer : result.layers) layers.push_back(used(layer));
+  nlohmann::json out = to_json(result.evidence);
+  out.update({{"id", result.id},
+              {"author", result.author},
+              {"source", used(result.source)},
+              {"target", result.target.empty() ? nlohmann::json() : nlohmann::json(result.target)},
+              {"layers", layers},
+              {"open", result.open},
+              {"slip_m", result.slip},
+              {"slip_rad", result.slip_angle}});
+  return out;
+}
+
+std::string pair_of(const AlignResult& result) {
+  return result.source.agent + " in " + (result.target.empty() ? "the map" : result.target);
+}
+
+std::string to_words(const AlignResult& result) {
+  std::string words =
+      pair_of(result) + ", " + result.source.agent + " as of revision " + format_count(result.source.revision);
+  for (const AlignResult::Used& layer : result.layers) {
+    words += ", " + layer.agent + " " + format_count(layer.revision);
+  }
+  return words + "\n" + to_words(result.evidence);
+}
+
 }  // namespace concord

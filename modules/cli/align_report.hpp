@@ -12,4 +12,10 @@ namespace concord {
 [[nodiscard]] nlohmann::json to_json(const AlignEvidence& evidence);
 [[nodiscard]] std::string to_words(const AlignEvidence& evidence);
 
+/// The same with who was looked at, up to which revision.
+[[nodiscard]] nlohmann::json to_json(const AlignResult& result);
+[[nodiscard]] std::string to_words(const AlignResult& result);
+/// "robot2 in the map", "robot2 in robot1".
+[[nodiscard]] std::string pair_of(const AlignResult& result);
+
 }  // namespace concord

@@ -90,7 +90,7 @@ void add_agent_corrections(Program& program);
 void add_requests(Program& program);
 /// save, load, maps.
 void add_saved_maps(Program& program);
-/// align, accept-alignment, drop-alignment.
+/// align, alignment, alignments.
 void add_align(Program& program);
 void add_downsample(Program& program);
 void add_publish(Program& program);
