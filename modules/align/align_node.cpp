@@ -61,7 +61,9 @@ void AlignNode::on_request(AlignRequest request) {
   if (!known) return replies_.deny(kRequests, request.id, known.error());
   if (*known != nullptr) return tell(**known);
   if (const auto can = check_task(request, layers_.now()); !can) {
-    return replies_.deny(kRequests, request.id, can.error());
+    const bool is_early = !layers_.settled() && can.error().code != Code::kBadRequest;
+    const Error early{Code::kBusy, "align has just begun and has not heard everybody yet; ask again"};
+    return replies_.deny(kRequests, request.id, is_early ? early : can.error());
   }
   const std::string id = request.id;
   if (const auto taken = desk_.take(std::move(request), content); !taken) {

@@ -7,10 +7,12 @@ namespace concord {
 namespace {
 
 const std::string kStreamPrefix = "out/agent/";
+/// Streams and lists are said each second; some of that may be lost.
+constexpr std::int64_t kAllHeard = 5'000'000;
 
 }  // namespace
 
-LayersNode::LayersNode(const NodeContext& context) : context_(context) {
+LayersNode::LayersNode(const NodeContext& context) : context_(context), start_(context.bus.now()) {
   listen<BrickPacket>(context_.bus, context_.counters, context_.process, kStreamPrefix + "[^/]+/bricks",
                       [this](const std::string& channel, const BrickPacket& packet) {
                         if (BrickReceiver* stream = stream_of_channel(channel, true)) stream->on_packet(packet);
@@ -23,6 +25,13 @@ LayersNode::LayersNode(const NodeContext& context) : context_(context) {
                       });
   listen<AgentList>(context_.bus, context_.counters, context_.process, "out/agents",
                     [this](const std::string&, const AgentList& list) { on_agents(list); });
+}
+
+bool LayersNode::settled() const {
+  if (context_.bus.now() - start_ > kAllHeard) return true;
+  return list_ && std::ranges::all_of(list_->agents, [this](const AgentState& agent) {
+           return agent.revision == 0 || layers_.contains(agent.id);
+         });
 }
 
 /// Null if there is none and none may begin, there is no room for one more, or none can have this name.
@@ -52,6 +61,7 @@ std::unique_ptr<BrickReceiver> LayersNode::make_receiver(const std::string& id) 
 }
 
 void LayersNode::on_agents(const AgentList& list) {
+  list_ = list;
   for (auto& [id, layer] : layers_) {
     const auto state = std::ranges::find(list.agents, id, &AgentState::id);
     const bool is_placed = state != list.agents.end() && state->aligned && state->frame_id == layer.frame_id;

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "align/align_task.hpp"
@@ -19,6 +20,8 @@ class LayersNode {
 
   /// As they are now.
   [[nodiscard]] const AlignLayers& now();
+  /// Whoever merge knows to have sent a submap is here, so that who is not here is nowhere; or that takes too long.
+  [[nodiscard]] bool settled() const;
 
  private:
   [[nodiscard]] BrickReceiver* stream_of_channel(const std::string& channel, bool may_begin);
@@ -26,7 +29,9 @@ class LayersNode {
   void on_agents(const AgentList& list);
 
   NodeContext context_;
+  std::int64_t start_;
   AlignLayers layers_;
+  std::optional<AgentList> list_;  ///< the last
   std::map<std::string, std::unique_ptr<BrickReceiver>> streams_;
 };
 

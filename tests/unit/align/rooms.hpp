@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <vector>
 
@@ -112,6 +113,29 @@ inline AlignMap cloud_map(const Points& points, int threads = 1) {
 inline double metres_off(const Transform& a, const Transform& b) { return (a.translation() - b.translation()).norm(); }
 inline double degrees_off(const Transform& a, const Transform& b) {
   return Eigen::AngleAxisd(Eigen::Matrix3d(a.linear().transpose() * b.linear())).angle() * 180.0 / std::numbers::pi;
+}
+
+/// The voxels that hold the points, as an agent that marks no free space would send them.
+inline BrickMap voxels_of(const Points& points) {
+  std::map<BrickIndex, DenseBrick> bricks;
+  for (const Eigen::Vector3f& p : points) {
+    const VoxelIndex voxel = voxel_of(p.cast<double>(), kResolution);
+    const auto [it, is_new] = bricks.try_emplace(brick_of(voxel));
+    if (is_new) it->second.fill(kUnknown);
+    it->second[static_cast<std::size_t>(local_of(voxel))] = kOccupied;
+  }
+  BrickMap map;
+  for (const auto& [index, dense] : bricks) map.set(index, Brick::from_dense(dense));
+  return map;
+}
+
+/// The room and a part of it in another frame, overlapping by over half.
+inline Points left_part() {
+  return kept(room(), [](const Eigen::Vector3f& p) { return p.x() < 1.6F; });
+}
+inline const Transform kT_left_right = transform(3.0, -1.0, 0.4, 0.7);
+inline Points right_part() {
+  return moved(kept(room(), [](const Eigen::Vector3f& p) { return p.x() > -1.7F; }), kT_left_right.inverse());
 }
 
 }  // namespace concord::test
