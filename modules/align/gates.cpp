@@ -8,13 +8,16 @@ namespace {
 struct Gates {
   double min_overlap;  ///< of the map that is covered better
   double min_upright;  ///< square metres of walls that lie on walls, both ways
-  double max_against;  ///< share against, of walls, where there are few of them
-  double
-      max_against_big;  ///< and where there are many: one piece of furniture is no longer all that tells places apart
 };
-constexpr Gates kWithGuess{0.30, 5.0, 0.10, 0.10};
-constexpr Gates kWithoutGuess{0.40, 12.0, 0.025, 0.10};
-constexpr double kManyWalls = 100.0;  // square metres, both ways
+constexpr Gates kWithGuess{0.30, 5.0};
+constexpr Gates kWithoutGuess{0.40, 12.0};
+
+/// Share against, of walls: in a room a few percent are all the furniture that tells it from its mirror image; in a
+/// building one piece of furniture is no longer all that tells places apart, and slow drift adds up.
+constexpr double kMaxAgainstRoom = 0.025;
+constexpr double kMaxAgainstBuilding = 0.10;
+constexpr double kRoomWalls = 100.0;  // square metres, both ways
+constexpr double kBuildingWalls = 300.0;
 
 constexpr double kMinLevel = 1.0;  // square metres of floor or ceiling that lie right, both ways
 constexpr double kMinRise = 1.0;   // square metres
@@ -27,6 +30,11 @@ constexpr double kPlausibleLevelAgainst = 0.08;
 const Gates& gates_for(Origin origin) { return origin == Origin::kGuess ? kWithGuess : kWithoutGuess; }
 
 double overlap(const Support& s) { return std::max(s.overlap_source(), s.overlap_target()); }
+
+double max_against(double walls) {
+  const double share = std::clamp((walls - kRoomWalls) / (kBuildingWalls - kRoomWalls), 0.0, 1.0);
+  return kMaxAgainstRoom + share * (kMaxAgainstBuilding - kMaxAgainstRoom);
+}
 
 double contradicted_share(const Verdicts& v) {
   return v.matched + v.contradicted > 0.0 ? v.contradicted / (v.matched + v.contradicted) : 0.0;
@@ -50,8 +58,7 @@ AlignReason check_gates(const Support& s, Origin origin) {
   const Gates& gates = gates_for(origin);
   const Verdicts upright = s.upright();
   if (overlap(s) < gates.min_overlap || upright.matched < gates.min_upright) return AlignReason::kLowOverlap;
-  const double max_against = upright.matched < kManyWalls ? gates.max_against : gates.max_against_big;
-  if (upright.share_against() > max_against || s.level().share_against() > kMaxLevelAgainst ||
+  if (upright.share_against() > max_against(upright.matched) || s.level().share_against() > kMaxLevelAgainst ||
       contradicted_share(upright) > kMaxContradicted) {
     return AlignReason::kDiverged;
   }

@@ -19,6 +19,8 @@ constexpr double kFlatness = 1e-3;
 constexpr double kSolid = 0.05;
 constexpr double kSolidShare = 0.01;
 constexpr double kTurnPerStep = 0.1;  // radians a metre: metres at a lever arm of ten
+constexpr int kRest = 10;             // iterations
+constexpr double kRestSteps = 4.0;    // least steps: less than that over so many iterations is no way
 constexpr double kMaxStep = 0.5;      // metres an iteration
 constexpr double kMaxTurn = 0.15;     // radians an iteration
 /// Holds directions that nothing measures in place, relative to the best measured one.
@@ -168,6 +170,14 @@ Eigen::Vector3d mean_of(std::span<const SurfaceCell> source) {
   return source.empty() ? sum : Eigen::Vector3d(sum / static_cast<double>(source.size()));
 }
 
+/// Pairs that change from step to step may keep it going round a place for ever: it has come to an end there all the
+/// same.
+bool is_at_rest(const Transform& before, const Transform& now, const Eigen::Vector3d& p_target, double min_step) {
+  const Transform went = now * before.inverse();
+  const double turn = Eigen::AngleAxisd(Eigen::Matrix3d(went.linear())).angle();
+  return (went * p_target - p_target).norm() < kRestSteps * min_step && turn < kRestSteps * kTurnPerStep * min_step;
+}
+
 }  // namespace
 
 GicpResult refine(const SurfaceLevel& target, std::span<const SurfaceCell> source, const Transform& T_target_source,
@@ -176,6 +186,7 @@ GicpResult refine(const SurfaceLevel& target, std::span<const SurfaceCell> sourc
   out.T_target_source = T_target_source;
   Linearisation linearise(target, source, options);
   out.p_target_centre = T_target_source * mean_of(source);
+  Transform rested = T_target_source;  // where it was at the last rest
   while (true) {
     const Sums sums = linearise.at(out.T_target_source, out.p_target_centre);
     out.pairs = sums.pairs;
@@ -192,6 +203,10 @@ GicpResult refine(const SurfaceLevel& target, std::span<const SurfaceCell> sourc
     out.T_target_source = moved(out.T_target_source, step, out.p_target_centre);
     ++out.iterations;
     out.converged = step.head<3>().norm() < kTurnPerStep * options.min_step && step.tail<3>().norm() < options.min_step;
+    if (out.iterations % kRest == 0) {
+      out.converged = out.converged || is_at_rest(rested, out.T_target_source, out.p_target_centre, options.min_step);
+      rested = out.T_target_source;
+    }
     out.p_target_centre = sums.centre / sums.weight;
   }
 }

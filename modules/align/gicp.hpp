@@ -27,7 +27,9 @@ struct GicpResult {
 struct GicpOptions {
   double kernel = 0.1;  ///< metres across the surface at which a pair's weight has fallen to a quarter
   int max_iterations = 20;
-  double min_step = 2e-4;  ///< metres; a smaller step, and a turn by a tenth of it a metre, ends the search
+  /// Metres; a smaller step, and a turn by a tenth of it a metre, ends the search; so does less than four of them over
+  /// ten iterations, round a place where pairs change from step to step.
+  double min_step = 2e-4;
   int threads = 1;
 };
 
