@@ -94,7 +94,7 @@ nlohmann::json race_all(const std::vector<Pair>& pairs, int rounds) {
 int main(int argc, char** argv) {
   CLI::App app{"Alignment on real maps: how often it finds the place, whether it is ever fooled, how fast it is."};
   Amount amount;
-  int fooled = 500;
+  int fooled = 60;
   int rounds = 5;
   bool json = false;
   app.add_option("--guesses", amount.guesses, "rough guesses a pair")->check(CLI::Range(0, 10000));
