@@ -23,8 +23,8 @@ struct Tally {
 using Table = std::map<std::string, Tally>;
 
 struct Amount {
-  int guesses = 20;     ///< a pair
-  int placements = 2;   ///< a pair, without a guess: the source turned and shifted anew
+  int guesses = 20;    ///< a pair
+  int placements = 2;  ///< a pair, without a guess: the source turned and shifted anew
   int threads = 1;
 };
 
