@@ -43,9 +43,10 @@ struct Asked {
 
 enum class Answer { kNothing, kMatched, kDisplaced, kContradicted };
 
-/// What a map says of a piece of surface at `p` with normal `n`.
-Answer answer(const AlignMap& map, const Eigen::Vector3d& p, const Eigen::Vector3d& n, const SurfaceCell& piece) {
-  const double size = map.fine().size();
+/// What a map says of a piece of surface at `p` with normal `n`. `size`: of the larger cells of the two, since the mean
+/// of a large one lies off the surface where it bends.
+Answer answer(const AlignMap& map, const Eigen::Vector3d& p, const Eigen::Vector3d& n, const SurfaceCell& piece,
+              double size) {
   const SurfaceCell* nearest = map.fine().nearest(p);
   if (nearest != nullptr) {
     const Eigen::Vector3d d = nearest->mean.cast<double>() - p;
@@ -69,6 +70,7 @@ Asked ask(const AlignMap& map, const SurfaceLevel& other, const Transform& T, st
   Asked out;
   const double area =
       other.size() * other.size() * static_cast<double>(other.cells().size()) / static_cast<double>(count);
+  const double size = std::max(map.fine().size(), other.size());
   for (std::size_t i = begin; i < end; ++i) {
     const SurfaceCell& piece = other.cells()[spread(i, count, other.cells().size())];
     if (!piece.is_flat() && !piece.is_solid) continue;
@@ -76,7 +78,7 @@ Asked ask(const AlignMap& map, const SurfaceLevel& other, const Transform& T, st
     Verdicts& verdicts = is_upright ? out.upright : out.level;
     verdicts.all += area;
     const Eigen::Vector3d n = T.linear() * piece.normal.cast<double>();
-    const Answer said = answer(map, T * piece.mean.cast<double>(), n, piece);
+    const Answer said = answer(map, T * piece.mean.cast<double>(), n, piece, size);
     if (said == Answer::kNothing) continue;
     const bool matched = said == Answer::kMatched;
     (matched ? verdicts.matched : said == Answer::kDisplaced ? verdicts.displaced : verdicts.contradicted) += area;

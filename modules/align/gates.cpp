@@ -16,13 +16,15 @@ constexpr Gates kWithoutGuess{0.40, 12.0};
 /// building one piece of furniture is no longer all that tells places apart, and slow drift adds up.
 constexpr double kMaxAgainstRoom = 0.025;
 constexpr double kMaxAgainstBuilding = 0.10;
+/// Of it what stands in free space: people and doors move, walls do not.
+constexpr double kMaxContradictedRoom = 0.03;
+constexpr double kMaxContradictedBuilding = 0.06;
 constexpr double kRoomWalls = 100.0;  // square metres, both ways
 constexpr double kBuildingWalls = 300.0;
 
 constexpr double kMinLevel = 1.0;  // square metres of floor or ceiling that lie right, both ways
 constexpr double kMinRise = 1.0;   // square metres
 constexpr double kMinShareRise = 0.02;
-constexpr double kMaxContradicted = 0.03;
 constexpr double kMaxLevelAgainst = 0.15;
 constexpr double kPlausibleAgainst = 0.05;
 constexpr double kPlausibleLevelAgainst = 0.08;
@@ -31,9 +33,9 @@ const Gates& gates_for(Origin origin) { return origin == Origin::kGuess ? kWithG
 
 double overlap(const Support& s) { return std::max(s.overlap_source(), s.overlap_target()); }
 
-double max_against(double walls) {
-  const double share = std::clamp((walls - kRoomWalls) / (kBuildingWalls - kRoomWalls), 0.0, 1.0);
-  return kMaxAgainstRoom + share * (kMaxAgainstBuilding - kMaxAgainstRoom);
+/// Between what holds for a room and for a building.
+double between(double room, double building, double walls) {
+  return room + std::clamp((walls - kRoomWalls) / (kBuildingWalls - kRoomWalls), 0.0, 1.0) * (building - room);
 }
 
 double contradicted_share(const Verdicts& v) {
@@ -58,8 +60,10 @@ AlignReason check_gates(const Support& s, Origin origin) {
   const Gates& gates = gates_for(origin);
   const Verdicts upright = s.upright();
   if (overlap(s) < gates.min_overlap || upright.matched < gates.min_upright) return AlignReason::kLowOverlap;
-  if (upright.share_against() > max_against(upright.matched) || s.level().share_against() > kMaxLevelAgainst ||
-      contradicted_share(upright) > kMaxContradicted) {
+  const double walls = upright.matched;
+  if (upright.share_against() > between(kMaxAgainstRoom, kMaxAgainstBuilding, walls) ||
+      contradicted_share(upright) > between(kMaxContradictedRoom, kMaxContradictedBuilding, walls) ||
+      s.level().share_against() > kMaxLevelAgainst) {
     return AlignReason::kDiverged;
   }
   if (s.level().matched < kMinLevel) return AlignReason::kDegenerate;
