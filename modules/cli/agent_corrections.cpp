@@ -6,6 +6,7 @@
 #include "cli/arguments.hpp"
 #include "cli/live.hpp"
 #include "cli/report.hpp"
+#include "cli/times.hpp"
 
 namespace concord {
 namespace {
@@ -22,23 +23,25 @@ struct Sighting {
 
 Outcome set_weight(const Weighing& weighing, const Common& common) {
   if (!is_name(weighing.agent)) return bad_name(weighing.agent);
-  if (!weighing.id.empty() && !is_name(weighing.id)) return bad_name(weighing.id);
+  if (const auto fine = check_own_id(weighing.id); !fine) return fail(fine.error());
   Live live(common);
   const WeightRequest request{live.id_or_new(weighing.id), author_or_user(weighing.author), weighing.agent,
                               weighing.weight, live.bus().now()};
-  return print_revision(live.ask("in/weight", encode(request), request.id), common);
+  return print_revision(live.ask("in/weight", request), common);
 }
 
+/// "now", microseconds since 1970, or what every other time is given as.
 Result<std::int64_t> parse_utime(const std::string& text, std::int64_t now) {
   if (text == "now") return now;
   std::int64_t utime = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), utime);
   if (error == std::errc() && end == text.data() + text.size() && utime > 0) return utime;
-  return refuse(Code::kMalformed, "'" + text + "' is no time: microseconds since 1970, or now");
+  return parse_time(text, now);
 }
 
 Outcome localise(const Sighting& sighting, const Common& common) {
-  for (const std::string& name : {sighting.id, sighting.frame.agent, sighting.frame.frame_id}) {
+  if (const auto fine = check_own_id(sighting.id); !fine) return fail(fine.error());
+  for (const std::string& name : {sighting.frame.agent, sighting.frame.frame_id}) {
     if (!name.empty() && !is_name(name)) return bad_name(name);
   }
   if (!is_name(sighting.robot)) return bad_name(sighting.robot);
@@ -53,7 +56,7 @@ Outcome localise(const Sighting& sighting, const Common& common) {
                                 *T_frame_base,
                                 sighting.frame,
                                 *utime};
-  return print_revision(live.ask("in/localise", encode(request), request.id), common);
+  return print_revision(live.ask("in/localise", request), common);
 }
 
 }  // namespace
@@ -70,7 +73,11 @@ void add_agent_corrections(Program& program) {
                                  [sighting](const Common& common) { return localise(*sighting, common); });
   locate.add_option("robot", sighting->robot, "its id")->required();
   locate.add_option("pose", sighting->pose, "its base as \"x y z qx qy qz qw\"")->required();
-  locate.add_option("--at", sighting->at, "when: microseconds since 1970, within the last 30 s")->capture_default_str();
+  locate
+      .add_option("--at", sighting->at,
+                  "when, within the last 30 s: 2026-11-22T07:15:03.5 (local; or with Z, +01:00), 5s ago, or "
+                  "microseconds since 1970")
+      ->capture_default_str();
   locate.add_option("--frame", sighting->frame.agent, "the agent in whose frame it was seen; without it the map's");
   locate.add_option("--frame-id", sighting->frame.frame_id,
                     "that agent's frame as it was seen: refused if it has begun another since");

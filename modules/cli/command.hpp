@@ -86,7 +86,9 @@ void add_leases(Program& program);
 void add_conflicts(Program& program);
 /// set-weight, localise.
 void add_agent_corrections(Program& program);
-/// set-transform, goal, reset, remove.
+/// goal, paths.
+void add_goals(Program& program);
+/// set-transform, reset, remove.
 void add_requests(Program& program);
 /// save, load, maps.
 void add_saved_maps(Program& program);

@@ -167,7 +167,7 @@ DemoRun::Step DemoRun::align(const AgentState& state) {
   const auto agent = std::ranges::find(scene_.agents, state.id, &DemoAgent::id);
   if (agent == scene_.agents.end()) return {};
   const TransformRequest request{live_->new_id(), scene_.author, state.id, state.frame_id, agent->T_map_agent};
-  const auto answer = live_->ask("in/transform", encode(request, live_->bus().now()), request.id);
+  const auto answer = live_->ask("in/transform", request);
   if (!answer) return tl::unexpected(answer.error());
   say(state.id + " is aligned where it is known to have started");
   watch_->note_aligned(state.id, agent->T_map_agent);
@@ -180,7 +180,7 @@ DemoRun::Step DemoRun::all_taken_in() {
     if (!watch_->sends_clouds(agent)) continue;
     // Ingest answers in the order in which it hears: what was sent before this question is in the layer.
     const DownsampleRequest request{live_->new_id(), agent.id, kCoarse};
-    const auto answer = live_->ask("in/downsample", encode(request, live_->bus().now()), request.id);
+    const auto answer = live_->ask("in/downsample", request);
     if (!answer) return tl::unexpected(answer.error());
     since[agent.id] = live_->bus().now();
   }
@@ -199,7 +199,7 @@ tl::expected<std::int64_t, Failure> DemoRun::save(const std::string& name) {
   const double end = now() + kSync;
   for (;;) {
     const MapRequest request{live_->new_id(), MapRequest::Op::kSave, name, "bt", true, ""};
-    const auto answer = live_->ask("in/map_request", encode(request, live_->bus().now()), request.id);
+    const auto answer = live_->ask("in/map_request", request);
     if (answer) return answer->revision;
     // A merge that was started again waits for its layers first.
     if (answer.error().code != concord::name(Code::kBusy) || now() > end) return tl::unexpected(answer.error());
@@ -255,7 +255,7 @@ DemoRun::Step DemoRun::edit() {
   request.author = scene_.author;
   request.shape = VoxelList{scene_.resolution, to_boxes(scene_.edit)};
   request.utime = live_->bus().now();
-  const auto answer = live_->ask("in/edit", encode(request), request.id);
+  const auto answer = live_->ask("in/edit", request);
   if (!answer) return tl::unexpected(answer.error());
   const auto shown = wait_for("the edit in the map", kSync, [this] {
     return std::ranges::all_of(scene_.edit, [&](const VoxelIndex& v) {

@@ -59,8 +59,8 @@ Outcome downsample(const Options& options, const Common& common) {
 }  // namespace
 
 tl::expected<std::vector<Eigen::Vector3f>, Failure> request_cloud(Live& live, const DownsampleRequest& request) {
-  const Question question{"in/downsample", encode(request, live.bus().now()), request.id, "ingest", kSilence};
-  const auto parts = ask_in_parts<Downsampled>(live, question, "out/downsampled");
+  const auto parts =
+      ask_in_parts<Downsampled>(live, Desk{"in/downsample", "ingest", "out/downsampled", kSilence}, request);
   if (!parts) return tl::unexpected(parts.error());
   std::vector<Eigen::Vector3f> points;
   for (const Downsampled& part : *parts) points.insert(points.end(), part.points.begin(), part.points.end());

@@ -28,7 +28,7 @@ struct Options {
 
 tl::expected<Answer, Failure> ask(Live& live, LeaseRequest& request) {
   request.utime = live.bus().now();
-  return live.ask("in/lease", encode(request), request.id);
+  return live.ask("in/lease", request);
 }
 
 /// Also when a person has ended the program, which no other wait outlasts. Returns whether merge has heard it.
@@ -48,6 +48,16 @@ bool free_at_the_end(Live& live, LeaseRequest& request) {
   return *freed;
 }
 
+/// Whether its holder has freed it meanwhile, by another client: to renew it would take it again.
+std::shared_ptr<bool> watch_for_free(Live& live, const LeaseRequest& request) {
+  auto freed = std::make_shared<bool>(false);
+  live.hear<LeaseRequest>(
+      "in/lease", [freed, id = request.id, author = request.author](const std::string&, const LeaseRequest& heard) {
+        *freed = *freed || (!heard.hold && heard.id == id && heard.author == author);
+      });
+  return freed;
+}
+
 Outcome hold(const Options& options, LeaseRequest request, const Common& common) {
   Live live(common);
   request.id = live.id_or_new(request.id);
@@ -58,20 +68,28 @@ Outcome hold(const Options& options, LeaseRequest request, const Common& common)
     std::fprintf(stderr, "lease %s is held for %s s; Ctrl-C frees it\n", request.id.c_str(),
                  format_number(*options.seconds, 0).c_str());
   }
+  const auto freed_elsewhere = watch_for_free(live, request);
   const std::int64_t end = live.bus().now() + std::llround(*options.seconds * 1e6);
-  while (held && live.bus().now() < end && !end_requested()) {
-    live.wait(std::min(kRenew, static_cast<double>(end - live.bus().now()) / 1e6), [] { return false; });
-    if (live.bus().now() < end && !end_requested()) held = ask(live, request);
+  const auto goes_on = [&] { return live.bus().now() < end && !end_requested() && !*freed_elsewhere; };
+  while (held && goes_on()) {
+    live.wait(std::min(kRenew, static_cast<double>(end - live.bus().now()) / 1e6), [&] { return *freed_elsewhere; });
+    if (goes_on()) held = ask(live, request);
   }
-  if (!held && !end_requested()) return tl::unexpected(held.error());
+  if (!held && !end_requested() && !*freed_elsewhere) return tl::unexpected(held.error());
+  // Also where another client did: a renewal of ours may have come after that.
   const bool freed = free_at_the_end(live, request);
+  if (*freed_elsewhere) {
+    return fail(
+        Exit::kRefused, "FREED",
+        "lease " + request.id + " was freed by another client of " + request.author + "'s: it is not held any more");
+  }
   common.print({{"id", request.id}, {"freed", freed}},
                "lease " + request.id + (freed ? " is freed" : " ends by itself in some seconds: nobody answered"));
   return Exit::kDone;
 }
 
 Outcome lease(const Options& options, const Common& common) {
-  if (!is_name(options.id)) return bad_name(options.id);
+  if (const auto fine = check_id(options.id); !fine) return fail(fine.error());
   LeaseRequest request;
   request.id = options.id;
   request.author = author_or_user(options.author);

@@ -94,6 +94,7 @@ Outcome publish(const Options& options, const Common& common) {
     if (!is_name(name)) return bad_name(name);
   }
   Live live(common);
+  if (const auto taken = live.take_resolution(); !taken) return tl::unexpected(taken.error());
   const bool as_bricks = options.as == "bricks";
   const auto loaded = load_map(options.file, as_bricks ? std::optional(live.site().resolution) : std::nullopt);
   if (!loaded) return fail(loaded.error());

@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "core/lattice.hpp"
+#include "core/text.hpp"
 #include "core/transform.hpp"
 
 namespace concord {
@@ -107,9 +107,5 @@ struct AgentState {
   std::int64_t revision = 0;
   bool synced = false;  ///< all that its stream has announced has arrived
 };
-
-/// Ids, frames and map names: 1 to 40 of [A-Za-z0-9._-], starting with a letter or digit.
-/// Such a name is safe as a file name and inside a channel name.
-[[nodiscard]] bool is_name(std::string_view text);
 
 }  // namespace concord

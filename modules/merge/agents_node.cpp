@@ -57,13 +57,21 @@ void AgentsNode::listen() {
 AgentsNode::Agent* AgentsNode::agent_called(const std::string& id, const std::string& channel) {
   const auto it = agents_.find(id);
   if (it != agents_.end()) return &it->second;
-  const auto there = std::ranges::count_if(agents_, [](const auto& entry) { return !entry.second.frame_id.empty(); });
-  const bool expected = people_.placements().contains(id);
-  if (!is_name(id) || (!expected && there >= context_.site.ingest.max_agents)) {
+  if (!is_name(id) || (!has_room() && !awaited_.contains(id))) {
     context_.counters.refused(channel, {Code::kBadName, "no room for an agent of this name"});
     return nullptr;
   }
   return &agents_[id];
+}
+
+/// Makes it where it can: who is not there, having left or said no frame yet, gives way.
+bool AgentsNode::has_room() {
+  const auto most = static_cast<std::size_t>(context_.site.ingest.max_agents);
+  if (agents_.size() < most) return true;
+  const auto absent = std::ranges::find_if(agents_, [](const auto& entry) { return entry.second.frame_id.empty(); });
+  if (absent == agents_.end()) return false;
+  agents_.erase(absent);
+  return true;
 }
 
 BrickReceiver* AgentsNode::stream_of_channel(const std::string& channel) {
@@ -211,16 +219,19 @@ int AgentsNode::weight_of(const std::string& id) const {
   return people_.weight(id).value_or(context_.site.agent(id).weight);
 }
 
+bool AgentsNode::all_heard() const { return ingest_heard_ && context_.bus.now() - *ingest_heard_ >= kAllHeard; }
+
 bool AgentsNode::has_all_that_was_aligned() const {
   const bool all = std::ranges::all_of(awaited_, [&](const std::string& id) {
     const auto it = agents_.find(id);
-    return it != agents_.end() && it->second.stream && it->second.stream->synced();
+    const bool is_there = it != agents_.end() && it->second.stream;
+    return is_there ? it->second.stream->synced() : all_heard();
   });
   return all || context_.bus.now() - last_arrival_ >= kLongestWait;
 }
 
 Result<void> AgentsNode::all_whole() const {
-  if (!ingest_heard_ || context_.bus.now() - *ingest_heard_ < kAllHeard) {
+  if (!all_heard()) {
     return refuse(Code::kBusy,
                   "ingest has not been heard for 3 s since merge began, so some layers may be missing; "
                   "does it run? ask again in some seconds");

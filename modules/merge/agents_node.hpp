@@ -35,8 +35,8 @@ class AgentsNode {
   /// People placed it, or gave it another weight.
   void follow(const std::string& id);
 
-  /// Every layer that people had put into the map before this start is whole again, or nothing more has arrived for so
-  /// long that they need not be waited for.
+  /// Every layer that people had put into the map before this start is whole again or, as ingest says of none of them,
+  /// gone; or nothing more has arrived for so long that they need not be waited for.
   [[nodiscard]] bool has_all_that_was_aligned() const;
 
   /// Whether the layers are all there is, as a saved map must hold them. Refused (kBusy): ingest has not been heard for
@@ -65,6 +65,9 @@ class AgentsNode {
 
   void listen();
   Agent* agent_called(const std::string& id, const std::string& channel);
+  [[nodiscard]] bool has_room();
+  /// Ingest has been heard for so long that all its agents were.
+  [[nodiscard]] bool all_heard() const;
   BrickReceiver* stream_of_channel(const std::string& channel);
   void open_stream(const std::string& id, Agent& agent);
   void enter_frame(const std::string& id, Agent& agent, const std::string& frame_id);

@@ -104,11 +104,15 @@ PinnedBricks KeptPins::expanded() const {
 }
 
 Result<void> EditLayer::check(const PinnedBricks& bricks) const {
-  if (count_of(bricks) > kMaxPins - pin_count_) {
+  return check_room(count_of(bricks), static_cast<std::int64_t>(bricks.size()));
+}
+
+Result<void> EditLayer::check_room(std::int64_t pins, std::int64_t bricks) const {
+  if (pins > kMaxPins - pin_count_) {
     return refuse(Code::kTooLarge, "all edits together, undone ones too, may pin " + std::to_string(kMaxPins) +
                                        " voxels; save the map and begin with a new state folder");
   }
-  if (static_cast<std::int64_t>(bricks.size()) > kMaxPinnedBricks - brick_count_) {
+  if (bricks > kMaxPinnedBricks - brick_count_) {
     return refuse(Code::kTooLarge, "all edits together, undone ones too, may lie in " +
                                        std::to_string(kMaxPinnedBricks) +
                                        " bricks of 8 voxels; save the map and begin with a new state folder");
@@ -166,7 +170,8 @@ void EditLayer::refresh(BrickIndex index, const History& history, BrickSet& touc
 
 bool EditLayer::changed_since(const PinnedBricks& bricks, std::int64_t base) const {
   return std::ranges::any_of(bricks, [&](const auto& entry) {
-    const auto& [index, pins] = entry;
+    const BrickIndex index = entry.first;
+    const PinBrick& pins = entry.second;  // clang 14 captures no structured binding
     const auto it = by_brick_.find(index);
     if (it == by_brick_.end() || it->second.last_revision <= base) return false;
     return std::ranges::any_of(it->second.edits, [&](std::uint32_t edit) {

@@ -60,6 +60,8 @@ class EditLayer {
 
   /// Whether there is room for one more: kTooLarge, over kMaxPins or kMaxPinnedBricks of all edits.
   [[nodiscard]] Result<void> check(const PinnedBricks& bricks) const;
+  /// The same for several that pin so many voxels, in so many bricks.
+  [[nodiscard]] Result<void> check_room(std::int64_t pins, std::int64_t bricks) const;
   /// Whether an edit can be taken back, or brought back: kNotFound; kConflict if it is undone, or active, already.
   [[nodiscard]] Result<void> check(const Correction::Undo& undo) const;
   /// @pre check(undo) and `revision` is above all before.

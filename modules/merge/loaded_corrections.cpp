@@ -143,9 +143,15 @@ Result<std::vector<Correction>> corrections_to_load(const Loading& loading, cons
   Following following(loading, people);
   if (const auto taken = following.take_saved(); !taken) return tl::unexpected(taken.error());
   following.complete(weight_here);
+  std::int64_t pins = 0, bricks = 0;
   for (const Correction& correction : following.out) {
     if (const auto follows = ours.take(correction); !follows) return tl::unexpected(follows.error());
+    const auto* edit = std::get_if<Correction::Edit>(&correction.what);
+    if (edit == nullptr) continue;
+    pins += static_cast<std::int64_t>(edit->added.size() + edit->deleted.size());
+    bricks += static_cast<std::int64_t>(by_brick(*edit).size());
   }
+  if (const auto room = people.edits().check_room(pins, bricks); !room) return tl::unexpected(room.error());
   return std::move(following.out);
 }
 

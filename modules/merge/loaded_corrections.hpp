@@ -26,8 +26,8 @@ struct Loading {
 /// here what it weighed there is given that weight. Asked again after it was done, nothing is left to do.
 ///
 /// `weight_here`: of an agent that nobody gave a weight. `ours` has taken all corrections that were made here. Refused:
-/// another correction with one of the ids, or a zone whose name is taken (kExists), and what else CorrectionCheck
-/// refuses of the whole.
+/// another correction with one of the ids, or a zone whose name is taken (kExists), more than all edits together may
+/// keep (kTooLarge), and what else CorrectionCheck refuses of the whole.
 [[nodiscard]] Result<std::vector<Correction>> corrections_to_load(
     const Loading& loading, const People& people, CorrectionCheck ours,
     const std::function<int(const std::string& agent)>& weight_here);

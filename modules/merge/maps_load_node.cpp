@@ -54,7 +54,8 @@ Result<void> MapsNode::open(const MapRequest& request, std::uint64_t content) {
     options.keep_bricks = false;
     auto archive = read_map_archive(*file, options);
     if (!archive) return tl::unexpected(archive.error());
-    Opened& opened = opened_.emplace();
+    opened_ = Opened{};
+    Opened& opened = *opened_;
     opened.request_id = request.id;
     opened.content = content;
     opened.version = *version;
@@ -82,17 +83,13 @@ Result<std::vector<Correction>> MapsNode::following() {
 
 /// Those that were made since the last time. @pre opened_.
 Result<void> MapsNode::take_ours() {
-  std::optional<Error> refused;
-  const auto read = parts_.store.for_each(
+  return parts_.store.for_each(
       [&](const Correction& correction) {
-        if (refused) return;
-        if (const auto taken = opened_->ours.take(correction); !taken) refused = taken.error();
-        if (!refused) opened_->ours_revision = correction.revision;
+        auto taken = opened_->ours.take(correction);
+        if (taken) opened_->ours_revision = correction.revision;
+        return taken;
       },
       opened_->ours_revision);
-  if (!read) return read;
-  if (refused) return tl::unexpected(*refused);
-  return {};
 }
 
 /// Whether ingest's streams say that the file's layers are agents now, whole: before that they cannot be placed.

@@ -69,13 +69,8 @@ Result<Bytes> MapsNode::archived() {
     const LayerHead head{id, context_.site.agent(id).kind, layer.frame_id, parts_.agents.incarnation(id), layer.weight};
     if (const auto added = writer.add(head, layer.map); !added) return tl::unexpected(added.error());
   }
-  std::optional<Error> refused;
-  const auto read = parts_.store.for_each([&](const Correction& correction) {
-    if (refused) return;
-    if (const auto added = writer.add(correction); !added) refused = added.error();
-  });
+  const auto read = parts_.store.for_each([&](const Correction& correction) { return writer.add(correction); });
   if (!read) return tl::unexpected(read.error());
-  if (refused) return tl::unexpected(*refused);
   return std::move(writer).finish();
 }
 

@@ -35,7 +35,12 @@ MergeNode::MergeNode(const NodeContext& context)
 People MergeNode::restored() {
   People people(context_.site.resolution);
   BrickSet touched;
-  const auto done = store_.for_each([&](const Correction& correction) { people.apply(correction, touched); });
+  const auto done = store_.for_each([&](const Correction& correction) -> Result<void> {
+    const auto* undo = std::get_if<Correction::Undo>(&correction.what);
+    if (undo != nullptr && !people.edits().check(*undo)) return damaged(correction.id + " undoes what is not so");
+    people.apply(correction, touched);
+    return {};
+  });
   if (!done) throw std::runtime_error(done.error().message);
   spdlog::info("restored what people made up to revision {}", people.revision());
   return people;

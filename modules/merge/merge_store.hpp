@@ -9,6 +9,9 @@
 
 namespace concord {
 
+/// Refuses (kIo): the file says what nobody could have stored.
+[[nodiscard]] tl::unexpected<Error> damaged(const std::string& what);
+
 /// What people made, on disk before it is acknowledged: their corrections in the order of revisions.
 class MergeStore {
  public:
@@ -21,8 +24,9 @@ class MergeStore {
   /// may succeed. @pre their revisions and ids are new.
   [[nodiscard]] Result<void> put(std::span<const Correction> corrections);
 
-  /// Hands on each correction above revision `after`, in the order of revisions. Refused (kIo): the file was damaged.
-  [[nodiscard]] Result<void> for_each(const std::function<void(Correction)>& visit, std::int64_t after = 0);
+  /// Hands on each correction above revision `after`, in the order of revisions, until one is refused. Refused: the
+  /// file was damaged (kIo), and what `visit` refuses.
+  [[nodiscard]] Result<void> for_each(const std::function<Result<void>(Correction)>& visit, std::int64_t after = 0);
 
  private:
   struct PutDetail;

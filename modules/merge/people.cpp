@@ -10,10 +10,6 @@
 namespace concord {
 namespace {
 
-bool is_edit(Operation::Kind kind) {
-  return kind == Operation::Kind::kAdd || kind == Operation::Kind::kDelete || kind == Operation::Kind::kMove;
-}
-
 bool matches(const Operation& operation, const HistoryRequest& request) {
   const auto concerns = [&](const std::string& subject) {
     return subject == operation.subject || (is_edit(operation.kind) && subject == operation.id);

@@ -16,6 +16,7 @@
 
 #include "agent/submap_publisher.hpp"
 #include "bus/messages.hpp"
+#include "core/compose.hpp"
 #include "process.hpp"
 #include "station.hpp"
 
@@ -148,26 +149,53 @@ class Person {
   std::int64_t version_ = 0;
 };
 
-/// Until the whole submap is the map.
-void bring_up(const test::Host& host, const BrickMap& map, test::Station& robot, SubmapPublisher& publisher) {
-  bool placed = false;
-  host.inside([&] {
-    listen<Answer>(robot.bus(), robot.counters(), "bench", kAnswers,
-                   [&placed](const std::string&, const Answer& answer) { placed = placed || answer.ok; });
-  });
-  test::StreamCopy copy(host, "out/map", kResolution);
-  publisher.begin_frame("frame1");
-  publisher.publish(map);
-  std::int64_t ask_at = 0;
-  const auto done = [&] {
-    if (!placed && robot.bus().now() >= ask_at) {
-      ask_at = robot.bus().now() + 300'000;
-      const TransformRequest request{"place", "bench", "robot1", "frame1", Transform::Identity()};
-      robot.bus().publish("in/transform", encode(request, robot.bus().now()));
+/// A robot that has sent all it has seen.
+class Robot {
+ public:
+  Robot(const test::Host& host, std::string id, const Transform& T_map_agent, const BrickMap& map)
+      : id_(std::move(id)), T_map_agent_(T_map_agent), station_(host) {
+    host.inside([&] {
+      publisher_ = std::make_unique<SubmapPublisher>(
+          station_.bus(), station_.counters(), SubmapPublisher::Config{id_, kResolution, 5e6, station_.bus().now()},
+          [] {});
+      listen<Answer>(station_.bus(), station_.counters(), "bench", kAnswers, [this](const std::string&, Answer answer) {
+        placed_ = placed_ || (answer.ok && answer.id == "place-" + id_);
+      });
+    });
+    publisher_->begin_frame("frame1");
+    publisher_->publish(map);
+  }
+  [[nodiscard]] LcmBus& bus() { return station_.bus(); }
+  /// Asks to be placed until it is.
+  [[nodiscard]] bool placed() {
+    const std::int64_t now = bus().now();
+    if (!placed_ && now >= ask_at_) {
+      ask_at_ = now + 300'000;
+      bus().publish("in/transform",
+                    encode(TransformRequest{"place-" + id_, "bench", id_, "frame1", T_map_agent_}, now));
     }
-    return copy.synced() && copy.map().brick_count() == map.brick_count();
+    return placed_;
+  }
+
+ private:
+  std::string id_;
+  Transform T_map_agent_;
+  test::Station station_;
+  std::unique_ptr<SubmapPublisher> publisher_;
+  bool placed_ = false;
+  std::int64_t ask_at_ = 0;
+};
+
+/// Until the map is what it must be.
+void wait_for(const test::Host& host, const BrickMap& expected, const std::vector<std::unique_ptr<Robot>>& robots) {
+  test::StreamCopy copy(host, "out/map", kResolution);
+  std::vector<LcmBus*> buses{&copy.bus()};
+  for (const auto& robot : robots) buses.push_back(&robot->bus());
+  const auto done = [&] {
+    const auto placed = std::ranges::count_if(robots, [](const auto& robot) { return robot->placed(); });
+    return placed == std::ssize(robots) && copy.synced() && copy.map() == expected;
   };
-  if (!test::eventually({&robot.bus(), &copy.bus()}, done)) throw std::runtime_error("the map did not come up");
+  if (!test::eventually(buses, done)) throw std::runtime_error("the map did not come up");
 }
 
 /// Voxels all over the map where adding one changes it.
@@ -204,25 +232,26 @@ Latency latency_of(std::vector<double> samples) {
   return {samples[samples.size() / 2], samples[samples.size() * 99 / 100]};
 }
 
-EditLatency measure_edits(std::int64_t voxels, const std::filesystem::path& state) {
+EditLatency measure_edits(const EditCase& given, const std::filesystem::path& state) {
   const Folder folder(state);
   const test::Host host("bench");
   host.run("ip route add 224.0.0.0/4 dev lo");
   const std::string site = folder.path() / "site.yaml";
-  const auto start = [&](const std::string& name) {
-    return test::Process(host, {std::string(kPrograms) + "/concord-" + name, "--site", site}, folder.path() / "log");
-  };
-  const test::Process ingest = start("ingest");
-  const test::Process merge = start("merge");
+  std::vector<std::unique_ptr<test::Process>> processes;
+  for (const std::string& name : given.processes) {
+    const std::vector<std::string> command{std::string(kPrograms) + "/concord-" + name, "--site", site};
+    processes.push_back(std::make_unique<test::Process>(host, command, folder.path() / "log"));
+  }
   const Echo echo(host);
-  test::Station robot(host);
-  const BrickMap map = made_up_map(voxels);
-  std::unique_ptr<SubmapPublisher> publisher;
-  host.inside([&] {
-    publisher = std::make_unique<SubmapPublisher>(
-        robot.bus(), robot.counters(), SubmapPublisher::Config{"robot1", kResolution, 5e6, robot.bus().now()}, [] {});
-  });
-  bring_up(host, map, robot, *publisher);
+  const BrickMap submap = made_up_map(given.voxels / std::ssize(given.T_map_agents));
+  std::vector<Layer> layers;
+  std::vector<std::unique_ptr<Robot>> robots;
+  for (const Transform& T : given.T_map_agents) {
+    layers.push_back({&submap, T, 1});
+    robots.push_back(std::make_unique<Robot>(host, "robot" + std::to_string(robots.size() + 1), T, submap));
+  }
+  const BrickMap map = compose(layers, {}, Policy::kMean, kResolution).values;
+  wait_for(host, map, robots);
 
   Person person(host);
   Places places(map);
@@ -235,7 +264,7 @@ EditLatency measure_edits(std::int64_t voxels, const std::filesystem::path& stat
       round_trips.push_back(ping);
       edits.push_back(edit);
     }
-    robot.bus().spin_once(0);
+    for (const auto& robot : robots) robot->bus().spin_once(0);
   }
   return {static_cast<std::int64_t>(map.known_count()), latency_of(round_trips), latency_of(edits)};
 }

@@ -2,7 +2,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
+
+#include "core/transform.hpp"
 
 namespace concord::bench {
 
@@ -19,9 +22,16 @@ struct EditLatency {
   Latency edit;             ///< from sending one voxel's edit to hearing the map's change
 };
 
-/// Real ingest and merge with their state in a folder of `state`, a map of about `voxels`, and one person who edits
-/// voxel by voxel; round trips and edits take turns. @pre the network is private.
+/// What there is when a person edits.
+struct EditCase {
+  std::int64_t voxels = 0;              ///< of all submaps
+  std::vector<Transform> T_map_agents;  ///< one agent each; they all have seen the same
+  std::vector<std::string> processes;   ///< of the stack
+};
+
+/// The case in real processes, with their state in a folder of `state`, and one person who edits voxel by voxel; round
+/// trips and edits take turns. @pre the network is private.
 /// @throws std::runtime_error when the stack does not come up or does not answer.
-[[nodiscard]] EditLatency measure_edits(std::int64_t voxels, const std::filesystem::path& state);
+[[nodiscard]] EditLatency measure_edits(const EditCase& given, const std::filesystem::path& state);
 
 }  // namespace concord::bench

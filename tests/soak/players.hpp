@@ -50,7 +50,7 @@ class Observer {
   std::unique_ptr<ListReceiver<Zone>> zones_;
 };
 
-/// Kills a process as by a power cut shortly after some requests were sent: the moments at which something can be half
+/// Kills a process (SIGKILL) shortly after some requests were sent: the moments at which something can be half
 /// done. Starts it again soon after.
 class Assassin {
  public:

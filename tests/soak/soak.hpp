@@ -32,7 +32,7 @@ struct Outcome {
 };
 
 /// Real processes on hosts of their own, people who edit, undo, fence off and re-align all at once, and a process
-/// killed as by a power cut at random moments.
+/// killed (SIGKILL) at random moments.
 [[nodiscard]] Outcome run(const Plan& plan, test::Network& network);
 
 }  // namespace concord::soak

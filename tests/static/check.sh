@@ -43,7 +43,7 @@ dependencies() {
 
 file_length() {
   { sources modules planner tests; find run lcmtypes modules tests -name '*.lcm' -o -name '*.sh' -o -name '*.java' -o -name run; } |
-    xargs wc -l | awk '$2 != "total" && $1 > 400 {print "  " $2 ": " $1}' | none 'files that are not read in one sitting'
+    xargs wc -l | awk '$2 != "total" && $1 > ($2 ~ /^tests\// ? 400 : 320) {print "  " $2 ": " $1}' | none 'files that are not read in one sitting'
 }
 
 # Every field says what it is, with unit and frame, in // comments on the line before: lcm-gen loses trailing ones.

@@ -112,8 +112,9 @@ Network::Network() {
 }
 
 Network::~Network() {
-  hosts_.clear();
+  // A namespace goes some time after its last user; its port would still be there for the next network.
   try {
+    for (std::size_t number = 1; number <= hosts_.size(); ++number) shell("ip link del port" + std::to_string(number));
     shell("ip link del switch");
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

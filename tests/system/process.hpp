@@ -19,7 +19,7 @@ class Process {
   Process(Process&& other) noexcept;
   Process& operator=(Process&&) = delete;
 
-  /// As a power cut: SIGKILL. Returns when it is gone.
+  /// SIGKILL. Returns when it is gone.
   void kill();
   /// As Ctrl-C: SIGINT. Returns its exit code; 128 + signal when it died of one.
   int interrupt();

@@ -20,7 +20,7 @@ class Stack {
 
   void start(const std::string& process);
   void start_all();
-  /// As a power cut.
+  /// By SIGKILL.
   void kill(const std::string& process);
   /// As Ctrl-C, all at once. @throws std::runtime_error unless every process ends with 0.
   void interrupt_all();

@@ -130,6 +130,20 @@ TEST_F(MergeNodeTest, AFullTableStillHasRoomForWhoIsInIt) {
   EXPECT_FALSE(heard_.empty()) << "after a restart the map is still there";
 }
 
+TEST_F(MergeNodeTest, StrangersWhoSayNothingOfUseTakeNoRoom) {
+  site_.ingest.max_agents = 1;
+  start();
+  for (int i = 0; i < 70; ++i) {
+    const std::string stranger = "out/agent/stranger" + std::to_string(i) + "/digest";
+    bus_->publish(stranger, encode(BrickDigest{0, bus_->now(), "frame1", 7 * site_.resolution, 0, 0, 0, 1}));
+  }
+  run();
+  EXPECT_TRUE(agents_.agents.empty());
+  send_wall();
+  ASSERT_EQ(agents_.agents.size(), 1u);
+  EXPECT_EQ(agents_.agents[0].id, "robot1");
+}
+
 TEST_F(MergeNodeTest, AMapThatIsNotWholeYetIsNotSaved) {
   send_wall();
   ASSERT_TRUE(place("t1", Transform::Identity()).ok);

@@ -1,10 +1,13 @@
 #include "merge/merge_store.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 
+#include "core/correction_check.hpp"
+#include "core/map_archive.hpp"
 #include "merge/number_text.hpp"
 
 namespace concord {
@@ -38,7 +41,10 @@ class MergeStoreTest : public ::testing::Test {
   std::vector<Correction> read() {
     MergeStore store(file_, 0.1);
     std::vector<Correction> all;
-    const auto done = store.for_each([&](Correction correction) { all.push_back(std::move(correction)); });
+    const auto done = store.for_each([&](Correction correction) -> Result<void> {
+      all.push_back(std::move(correction));
+      return {};
+    });
     EXPECT_TRUE(done) << done.error().message;
     return all;
   }
@@ -153,6 +159,22 @@ TEST_F(MergeStoreTest, WhatTheFirstVersionKeptIsThereInItsOrder) {
   }
 }
 
+TEST_F(MergeStoreTest, TheLargestEditOfTheFirstVersionAtAnyTimeCanBeSavedWithAMap) {
+  run_sql(std::string(kFirstVersion) +
+          "INSERT INTO edits VALUES (3, 'huge', 'eva', -5, 1, x'000000000000000000000000630000006300000063000000');");
+  CorrectionCheck check;
+  MapArchiveWriter writer(0.1);
+  std::size_t most = 0;
+  for (const Correction& correction : read()) {
+    EXPECT_TRUE(check.take(correction)) << correction.id;
+    EXPECT_TRUE(writer.add(correction)) << correction.id;
+    const auto* edit = std::get_if<Correction::Edit>(&correction.what);
+    if (edit != nullptr) most = std::max(most, edit->added.size());
+  }
+  EXPECT_EQ(most, 1'000'000u);
+  EXPECT_TRUE(std::move(writer).finish());
+}
+
 TEST_F(MergeStoreTest, AnEmptyStoreOfTheFirstVersionIsBroughtUpToo) {
   std::string sql = kFirstVersion;
   for (auto at = sql.find("INSERT INTO transforms"); at != sql.npos; at = sql.find("INSERT INTO transforms")) {
@@ -175,7 +197,10 @@ TEST_F(MergeStoreTest, WhatIsRefusedLeavesNoTraceAndNoGap) {
   EXPECT_EQ(store.put(taken).error().code, Code::kIo);
   ASSERT_TRUE(store.put(weight(2, "c"))) << "the same revision";
   int count = 0;
-  ASSERT_TRUE(store.for_each([&](const Correction& correction) { EXPECT_EQ(correction.revision, ++count); }));
+  ASSERT_TRUE(store.for_each([&](const Correction& correction) -> Result<void> {
+    EXPECT_EQ(correction.revision, ++count);
+    return {};
+  }));
   EXPECT_EQ(count, 2);
 }
 
@@ -193,7 +218,7 @@ TEST_F(MergeStoreTest, ADamagedRowIsToldNotGuessed) {
     }
     run_sql(damage);
     MergeStore store(file_, 0.1);
-    const auto done = store.for_each([](const Correction&) {});
+    const auto done = store.for_each([](const Correction&) -> Result<void> { return {}; });
     ASSERT_FALSE(done);
     EXPECT_EQ(done.error().code, Code::kIo);
   }

@@ -1,9 +1,29 @@
+#include <stdexcept>
+
+#include "merge/merge_schema.hpp"
 #include "people_station.hpp"
+#include "store/database.hpp"
 
 namespace concord {
 namespace {
 
 class PeopleNodeTest : public PeopleStation {};
+
+TEST_F(PeopleNodeTest, AStoreThatNobodyCouldHaveWrittenIsToldAtTheStart) {
+  ASSERT_TRUE(add("e1", {1, 1, 1}).ok);
+  ASSERT_TRUE(undo("u1", "e1").ok);
+  node_.reset();
+  {
+    Database store(site_.state / "merge.db", kMergeSchema);
+    ASSERT_TRUE(store.prepare("UPDATE corrections SET subject = 'nobody' WHERE id = 'u1'").run());
+  }
+  try {
+    start();
+    FAIL() << "it started";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("bring back a backup"), std::string::npos) << error.what();
+  }
+}
 
 TEST_F(PeopleNodeTest, UndoShowsWhatTheSensorsSay) {
   send_wall();
@@ -133,6 +153,13 @@ TEST_F(PeopleNodeTest, ZonesAreHeardAndOutliveARestart) {
   EXPECT_EQ(std::get<Box>(zones_->items()[0].volume).min.x(), 2);
 }
 
+TEST_F(PeopleNodeTest, ATextOverItsLimitIsAnsweredAndCounted) {
+  const Answer refused = zone("z1", "eva", ZoneRequest::Op::kAdd, std::string(1000, 'x'));
+  EXPECT_EQ(refused.id, "z1");
+  EXPECT_EQ(refused.code, "TOO_LARGE");
+  EXPECT_EQ(counters_.get("refused.in/zone.TOO_LARGE"), 1);
+}
+
 TEST_F(PeopleNodeTest, LeasesKeepOthersOutUntilTheyAreOver) {
   ASSERT_TRUE(lease("l1", "eva", true).ok);
   run(100'000);
@@ -140,7 +167,9 @@ TEST_F(PeopleNodeTest, LeasesKeepOthersOutUntilTheyAreOver) {
   EXPECT_EQ(leases_->items()[0].author, "eva");
   EXPECT_EQ(edit(edit_of("b1", "tom", {5, 5, 5})).code, "LOCKED");
   EXPECT_EQ(zone("z1", "tom", ZoneRequest::Op::kAdd, "door").code, "LOCKED");
-  EXPECT_EQ(lease("l2", "tom", true).code, "LOCKED");
+  const Answer locked = lease("l2", "tom", true);
+  EXPECT_EQ(locked.code, "LOCKED");
+  EXPECT_NE(locked.message.find("eva holds lease 'l1' for "), std::string::npos) << locked.message;
   EXPECT_TRUE(edit(edit_of("a1", "eva", {5, 5, 5})).ok);
   const Bytes toms_undo = encode(UndoRequest{"u1", "tom", "a1", false, 0});
   EXPECT_EQ(ask("in/undo", toms_undo).code, "LOCKED");

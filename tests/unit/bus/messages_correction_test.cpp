@@ -206,11 +206,11 @@ TEST(MessagesCorrection, ShapesAreChecked) {
 
 TEST(MessagesCorrection, ShapesThatAreTooLongAreRefusedUnread) {
   const Line scribble{std::vector<Eigen::Vector3d>(kMaxShapePoints + 1, Eigen::Vector3d::Zero()), 0};
-  expect_refused(decode<EditRequest>(encode(an_edit(scribble))), Code::kTooLarge, "");
+  expect_refused(decode<EditRequest>(encode(an_edit(scribble))), Code::kTooLarge, "e");
   VoxelList dust{0.05, std::vector<VoxelBox>(65'536)};
   EXPECT_TRUE(decode<EditRequest>(encode(an_edit(dust))));
   dust.boxes.emplace_back();
-  expect_refused(decode<EditRequest>(encode(an_edit(dust))), Code::kTooLarge, "");
+  expect_refused(decode<EditRequest>(encode(an_edit(dust))), Code::kTooLarge, "e");
 }
 
 TEST(MessagesCorrection, ShapesOfNoKindAreRefused) {
