@@ -97,7 +97,8 @@ struct CorrectionCheck::Follow {
 
   Result<void> operator()(const Correction::Undo& undo) const {
     const auto edit = list.edits_.find(undo.edit_id);
-    if (edit == list.edits_.end()) return refuse(Code::kNotFound, "no edit before this is called " + undo.edit_id);
+    if (edit == list.edits_.end())
+      return refuse(Code::kNotFound, "no edit or placement before this is called " + undo.edit_id);
     if (edit->second == undo.redo) {
       return refuse(Code::kConflict, "edit " + undo.edit_id + (undo.redo ? " was not undone" : " is undone already"));
     }
@@ -130,7 +131,9 @@ struct CorrectionCheck::Follow {
   Result<void> operator()(const Correction::Placement& placement) const {
     if (auto fine = check_agent(placement.agent); !fine) return fine;
     if (!is_name(placement.frame_id)) return refuse(Code::kBadName, std::string("frame_id must be ") + kNameRule);
-    return check_transform(placement.T_map_agent);
+    if (auto fine = check_transform(placement.T_map_agent); !fine) return fine;
+    list.edits_.emplace(id, true);
+    return {};
   }
 
   Result<void> operator()(const Correction::Weight& weight) const {

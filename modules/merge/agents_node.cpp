@@ -25,7 +25,8 @@ std::string agent_named(const std::string& channel, std::size_t prefix) {
 AgentsNode::AgentsNode(const NodeContext& context, const People& people, MapStreams& map)
     : context_(context), people_(people), map_(map), last_arrival_(context.bus.now()) {
   for (const auto& [id, placements] : people_.placements()) {
-    if (std::ranges::any_of(placements, [](const auto& entry) { return entry.second.placement.has_layer; }))
+    const auto awaits = [](const People::Placed& placed) { return placed.stands && placed.placement.has_layer; };
+    if (std::ranges::any_of(placements, [&](const auto& entry) { return std::ranges::any_of(entry.second, awaits); }))
       awaited_.insert(id);
   }
   listen();
@@ -117,7 +118,7 @@ void AgentsNode::follow(const std::string& id) {
   const Transform* T = T_map_agent(id, it->second);
   if (map_.layers().find(id) != nullptr) {
     map_.layers().set_weight(id, weight_of(id));
-    if (T != nullptr) map_.layers().place(id, *T);
+    T != nullptr ? map_.layers().place(id, *T) : map_.layers().unplace(id);
   }
   publish_pose(id, it->second);
 }

@@ -133,6 +133,12 @@ void PeopleNode::follow(std::span<const Correction> corrections) {
   for (const Correction& correction : corrections) {
     people_.apply(correction, touched);
     if (const auto* placement = std::get_if<Correction::Placement>(&correction.what)) agents.insert(placement->agent);
+    if (const auto* undo = std::get_if<Correction::Undo>(&correction.what)) {
+      const People::Made* undone = people_.find(undo->edit_id);
+      if (undone != nullptr && undone->operation.kind == Operation::Kind::kTransform) {
+        agents.insert(undone->operation.subject);
+      }
+    }
     if (const auto* weight = std::get_if<Correction::Weight>(&correction.what)) agents.insert(weight->agent);
     has_zones = has_zones || std::holds_alternative<Correction::ZoneChange>(correction.what);
   }
