@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -50,6 +51,25 @@ class BitLines {
     std::uint64_t rest = words[w] & ~std::uint64_t{0} >> (63 - ((bit - 1) & 63));
     while (rest == 0) rest = words[--w];
     return w << 6 | (63 - std::countl_zero(rest));
+  }
+  /// The first set bit above `bit` up to `last`; last + 1 where there is none.
+  [[nodiscard]] int next(int i, int bit, int last) const {
+    const std::uint64_t* words = line(i);
+    for (int w = (bit + 1) >> 6; w <= last >> 6; ++w) {
+      const std::uint64_t rest = w == (bit + 1) >> 6 ? words[w] & ~std::uint64_t{0} << ((bit + 1) & 63) : words[w];
+      if (rest != 0) return std::min(w << 6 | std::countr_zero(rest), last + 1);
+    }
+    return last + 1;
+  }
+  /// The last set bit below `bit` down to `first`; first - 1 where there is none. @pre bit > 0.
+  [[nodiscard]] int previous(int i, int bit, int first) const {
+    const std::uint64_t* words = line(i);
+    for (int w = (bit - 1) >> 6; w >= first >> 6; --w) {
+      const std::uint64_t rest =
+          w == (bit - 1) >> 6 ? words[w] & ~std::uint64_t{0} >> (63 - ((bit - 1) & 63)) : words[w];
+      if (rest != 0) return std::max(w << 6 | (63 - std::countl_zero(rest)), first - 1);
+    }
+    return first - 1;
   }
   /// Whether bits first to last (both included) are all set. @pre first <= last.
   [[nodiscard]] bool all(int i, int first, int last) const {

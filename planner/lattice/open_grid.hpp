@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "planner/lattice/cell.hpp"
 #include "planner/lattice/bit_lines.hpp"
+#include "planner/lattice/cell.hpp"
 
 namespace concord {
 

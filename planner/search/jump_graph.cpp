@@ -125,7 +125,7 @@ std::array<JumpGraph::Parts, 4> JumpGraph::onward_at(Spot at) const {
 
 JumpGraph::NodeId& JumpGraph::id_at(Spot at) const {
   return (*ids_[static_cast<std::size_t>(at.y / kTile) * tiles_per_row_ + at.x / kTile])[at.y % kTile * kTile +
-                                                                                        at.x % kTile];
+                                                                                         at.x % kTile];
 }
 
 /// Makes the spot the jump point that it is now, or none.

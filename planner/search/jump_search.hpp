@@ -12,9 +12,9 @@ namespace concord {
 
 /// A shortest path over open cells in eight directions.
 struct OctilePath {
-  std::int64_t cost = 0;     ///< in kStraight and kDiagonal
-  std::vector<Cell> turns;   ///< from start to goal; between two, steps in one direction
-  std::int64_t expanded = 0; ///< jump points
+  std::int64_t cost = 0;      ///< in kStraight and kDiagonal
+  std::vector<Cell> turns;    ///< from start to goal; between two, steps in one direction
+  std::int64_t expanded = 0;  ///< jump points
 };
 
 /// The fast path: A* over a jump graph. Exact; ties go to the point nearer to the goal, then to the one that was
