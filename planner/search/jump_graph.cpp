@@ -226,52 +226,65 @@ void JumpGraph::list(Node& node) {
   node.view = {{}, node.at, node.at};
   for (int part = 0; part < 8; ++part) {
     node.begin[part] = static_cast<std::uint32_t>(edges_.size()) - node.first;
-    if ((node.parts >> part & 1) != 0) scan(node.at, part, edges_, node.view);
+    if ((node.parts >> part & 1) != 0) scan(node, part);
   }
   node.begin[8] = static_cast<std::uint32_t>(edges_.size()) - node.first;
   node.is_listed = true;
 }
 
-void JumpGraph::add_straight(Spot from, int direction, std::vector<Edge>& edges, View& view) const {
+void JumpGraph::scan(Node& node, int part) {
+  if (part < 4) {
+    scan_straight(node.at, part, edges_, node.view);
+    return;
+  }
+  Spot at = node.at;
+  scan_diagonal(at, part, OpenGrid::kMaxSide, edges_, node.view);
+  View& view = node.view;
+  view.diagonal[part - 4] = static_cast<std::uint16_t>(std::abs(at.x - node.at.x));
+  // The step that ended it looked one further.
+  const Spot last = step(at, part);
+  view.low = {std::min(view.low.x, last.x), std::min(view.low.y, last.y)};
+  view.high = {std::max(view.high.x, last.x), std::max(view.high.y, last.y)};
+}
+
+void JumpGraph::scan_straight(Spot from, int direction, std::vector<Edge>& edges, View& view) const {
   const bool along_x = (direction & 1) == 0;
   const int line = along_x ? from.y : from.x;
   const int begin = along_x ? from.x : from.y;
+  if (!leads_[direction].test(line, begin)) return;
   const BitLines& stops = stops_[direction];
   const auto end = static_cast<std::uint16_t>(direction < 2 ? stops.next(line, begin) : stops.previous(line, begin));
   const Spot at = along_x ? Spot{end, from.y} : Spot{from.x, end};
   view.low = {std::min(view.low.x, at.x), std::min(view.low.y, at.y)};
   view.high = {std::max(view.high.x, at.x), std::max(view.high.y, at.y)};
-  if (!leads_[direction].test(line, begin)) return;
   const NodeId id = id_at(at);
   edges.push_back({id, at, nodes_[id].onward[direction]});
 }
 
-void JumpGraph::scan(Spot from, int part, std::vector<Edge>& edges, View& view) const {
-  if (part < 4) {
-    add_straight(from, part, edges, view);
-    return;
-  }
+bool JumpGraph::scan_diagonal(Spot& at, int part, int steps, std::vector<Edge>& edges, View& view) const {
   const int first = part - 4;
-  const int along_x = first & 1 ? left_of(first) : first;
-  const int along_y = first & 1 ? first : left_of(first);
+  const BitLines& leads_x = leads_[(first & 1) != 0 ? left_of(first) : first];
+  const BitLines& leads_y = leads_[(first & 1) != 0 ? first : left_of(first)];
   const int dx = kDx[part];
   const int dy = kDy[part];
-  int x = from.x;
-  int y = from.y;
+  int x = at.x;
+  int y = at.y;
   // Of the square that a diagonal step crosses, the lower left cell.
-  for (int left = dx < 0 ? -1 : 0, low = dy < 0 ? -1 : 0; squares_.test(y + low, x + left);) {
+  const int left = dx < 0 ? -1 : 0;
+  const int low = dy < 0 ? -1 : 0;
+  bool is_open = true;
+  for (; steps > 0 && (is_open = squares_.test(y + low, x + left)); --steps) {
     x += dx;
     y += dy;
-    const Spot at{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
-    if (leads_[along_x].test(y, x)) add_straight(at, along_x, edges, view);
-    if (leads_[along_y].test(x, y)) add_straight(at, along_y, edges, view);
+    const bool to_x = leads_x.test(y, x);
+    const bool to_y = leads_y.test(x, y);
+    if (!to_x && !to_y) continue;
+    const Spot here{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
+    scan_straight(here, first, edges, view);
+    scan_straight(here, left_of(first), edges, view);
   }
-  view.diagonal[first] = static_cast<std::uint16_t>(std::abs(x - from.x));
-  // The step that ended it looked one further.
-  view.low = {static_cast<std::uint16_t>(std::min<int>(view.low.x, x - (dx < 0))),
-              static_cast<std::uint16_t>(std::min<int>(view.low.y, y - (dy < 0)))};
-  view.high = {static_cast<std::uint16_t>(std::max<int>(view.high.x, x + (dx > 0))),
-               static_cast<std::uint16_t>(std::max<int>(view.high.y, y + (dy > 0)))};
+  at = {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
+  return is_open;
 }
 
 int JumpGraph::diagonal_run(Spot from, int part, int most) const {

@@ -82,8 +82,11 @@ class JumpGraph {
     return node.view;
   }
 
-  /// Appends what leaves any open cell in direction `part`, and adds to its view.
-  void scan(Spot from, int part, std::vector<Edge>& edges, View& view) const;
+  /// Appends what an open cell leads to straight on in `direction`, and adds to its view.
+  void scan_straight(Spot from, int direction, std::vector<Edge>& edges, View& view) const;
+  /// Walks up to `steps` steps along a diagonal (4 to 7), which are open as far as `at` moves, and appends what its
+  /// cells lead to straight on. Returns whether the diagonal may go on.
+  bool scan_diagonal(Spot& at, int part, int steps, std::vector<Edge>& edges, View& view) const;
 
   /// How many steps a diagonal (4 to 7) goes on from a cell, at most `most`.
   [[nodiscard]] int diagonal_run(Spot from, int part, int most) const;
@@ -116,10 +119,10 @@ class JumpGraph {
   void find_stops(int axis, int line, int first_word, int last_word);
   void find_leads(int axis, int line);
   void find_squares(int line, int first_word, int last_word);
-  void add_straight(Spot from, int direction, std::vector<Edge>& edges, View& view) const;
   void widen(int axis, int line, int first, int last, int& low, int& high) const;
   void settle(Spot at);
   void list(Node& node);
+  void scan(Node& node, int part);
   void compact();
 
   const OpenGrid& grid_;

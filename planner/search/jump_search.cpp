@@ -7,6 +7,12 @@ namespace {
 
 constexpr int kTieBits = 16;
 
+/// Steps along a diagonal that are looked at in one go.
+constexpr int kStride = 16;
+
+/// Ids from here on are the start's directions.
+constexpr std::uint32_t kFirstPart = JumpGraph::kNone - 8;
+
 /// Total cost beyond the least possible, then what is left of it in units of half a cell or so.
 std::uint64_t key_of(std::int64_t total, std::int64_t least, std::int64_t left) {
   return static_cast<std::uint64_t>(total - least) << kTieBits |
@@ -59,6 +65,26 @@ void JumpSearch::reach(const JumpGraph::Edge& edge, Spot from, std::int64_t cost
   open_.push({key_of(total + left, least_, left), edge.target});
 }
 
+/// The start has no list of what it leads to: it is looked for in one direction after the other, and along diagonals
+/// bit by bit, no sooner than a path that way could be the shortest.
+void JumpSearch::push_part(int part) {
+  const Spot last = scanned_[part];
+  const Spot next{static_cast<std::uint16_t>(last.x + kDx[part]), static_cast<std::uint16_t>(last.y + kDy[part])};
+  const std::int64_t left = between(next, goal_);
+  open_.push({key_of(between(start_, next) + left, least_, left), kFirstPart + static_cast<std::uint32_t>(part)});
+}
+
+void JumpSearch::scan_part(int part) {
+  first_.clear();
+  JumpGraph::View view;
+  if (part < 4) {
+    graph_.scan_straight(start_, part, first_, view);
+  } else if (graph_.scan_diagonal(scanned_[part], part, kStride, first_, view)) {
+    push_part(part);
+  }
+  for (const JumpGraph::Edge& edge : first_) reach(edge, start_, 0, JumpGraph::kNone);
+}
+
 std::optional<OctilePath> JumpSearch::find(Cell start, Cell goal) {
   begin();
   if (!graph_.grid().is_open(start) || !graph_.grid().is_open(goal)) return std::nullopt;
@@ -66,13 +92,15 @@ std::optional<OctilePath> JumpSearch::find(Cell start, Cell goal) {
   goal_ = spot_of(goal);
   least_ = between(start_, goal_);
   if (graph_.is_direct(start_, goal_)) return trace(JumpGraph::kNone, least_);
-  first_.clear();
-  JumpGraph::View view{{}, start_, start_};
-  for (int part = 0; part < 8; ++part) graph_.scan(start_, part, first_, view);
-  for (const JumpGraph::Edge& edge : first_) reach(edge, start_, 0, JumpGraph::kNone);
+  scanned_.fill(start_);
+  for (int part = 0; part < 8; ++part) push_part(part);
   while (!open_.empty()) {
     const NodeId id = open_.top().id;
     open_.pop();
+    if (id >= kFirstPart) {
+      scan_part(static_cast<int>(id - kFirstPart));
+      continue;
+    }
     State& state = states_[id];
     const JumpGraph::Parts parts = state.pending;
     if (parts == 0) continue;  // it was reached at less cost since

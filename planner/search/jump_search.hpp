@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -38,6 +39,8 @@ class JumpSearch {
   };
 
   void begin();
+  void push_part(int part);
+  void scan_part(int part);
   void reach(const JumpGraph::Edge& edge, Spot from, std::int64_t cost, NodeId parent);
   [[nodiscard]] OctilePath trace(NodeId last, std::int64_t cost);
 
@@ -48,6 +51,7 @@ class JumpSearch {
   std::int64_t least_ = 0;  ///< cost if nothing stood in the way
   Spot start_, goal_;
   std::int64_t expanded_ = 0;
+  std::array<Spot, 8> scanned_;         ///< how far the start was left in each direction
   std::vector<JumpGraph::Edge> first_;  ///< from the start
   std::vector<Spot> spots_;             ///< of the path, backwards
 };

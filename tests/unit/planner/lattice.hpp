@@ -70,7 +70,8 @@ inline OpenGrid to_grid(const Plain& plain) {
 inline Window random_change(std::mt19937& random, Plain& plain, OpenGrid& grid) {
   const auto below = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
   Window window{{below(plain.width), below(plain.height)}, {}};
-  window.high = {std::min(window.low.x + below(9), plain.width - 1), std::min(window.low.y + below(9), plain.height - 1)};
+  window.high = {std::min(window.low.x + below(9), plain.width - 1),
+                 std::min(window.low.y + below(9), plain.height - 1)};
   const int kind = below(3);
   for (int y = window.low.y; y <= window.high.y; ++y) {
     for (int x = window.low.x; x <= window.high.x; ++x) {
