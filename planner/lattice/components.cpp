@@ -48,6 +48,9 @@ Components::Components(const OpenGrid& grid)
   for (int ty = 0; ty < up_; ++ty) {
     for (int tx = 0; tx < across_; ++tx) join_runs(tx, ty);
   }
+  for (int ty = 0; ty < up_; ++ty) {
+    for (int tx = 0; tx < across_; ++tx) link(tx, ty);
+  }
 }
 
 void Components::update(const Window& window) {
@@ -58,6 +61,9 @@ void Components::update(const Window& window) {
   if (x1 < 0 || y1 < 0) return;
   for (int ty = y0; ty <= y1 / kTile; ++ty) {
     for (int tx = x0; tx <= x1 / kTile; ++tx) join_runs(tx, ty);
+  }
+  for (int ty = std::max(y0 - 1, 0); ty <= y1 / kTile; ++ty) {
+    for (int tx = std::max(x0 - 1, 0); tx <= x1 / kTile; ++tx) link(tx, ty);
   }
   is_joined_ = false;
 }
@@ -96,6 +102,35 @@ void Components::join_runs(int tx, int ty) {
   }
 }
 
+/// To the tiles on the right and above.
+void Components::link(int tx, int ty) {
+  Tile& tile = tile_at(tx, ty);
+  tile.right.clear();
+  tile.above.clear();
+  const auto add = [](std::vector<Link>& links, Link link) {
+    const auto same = [&](const Link& l) { return l.here == link.here && l.there == link.there; };
+    if (std::none_of(links.begin(), links.end(), same)) links.push_back(link);
+  };
+  if (tx + 1 < across_) {
+    const Tile& other = tile_at(tx + 1, ty);
+    const int x = (tx + 1) * kTile;  // of the column right of the border, and with its own border the line left of it
+    const int height = std::min(kTile, grid_.height() - ty * kTile);
+    const std::uint64_t both = word_at(grid_.columns(), x, ty * kTile) & word_at(grid_.columns(), x + 1, ty * kTile) &
+                               ~std::uint64_t{0} >> (64 - height);
+    for (std::uint64_t met = starts_of(both); met != 0; met &= met - 1) {
+      const int y = std::countr_zero(met);
+      add(tile.right, {tile.part_at(kTile - 1, y), other.part_at(0, y)});
+    }
+  }
+  if (ty + 1 < up_) {
+    const Tile& other = tile_at(tx, ty + 1);
+    for (std::uint64_t met = starts_of(tile.rows[kTile - 1] & other.rows[0]); met != 0; met &= met - 1) {
+      const int x = std::countr_zero(met);
+      add(tile.above, {tile.part_at(x, kTile - 1), other.part_at(x, 0)});
+    }
+  }
+}
+
 void Components::join_tiles() {
   std::uint32_t count = 0;
   for (Tile& tile : tiles_) {
@@ -106,27 +141,14 @@ void Components::join_tiles() {
   std::iota(parent_.begin(), parent_.end(), 0U);
   for (int ty = 0; ty < up_; ++ty) {
     for (int tx = 0; tx < across_; ++tx) {
-      const Tile& tile = tiles_[static_cast<std::size_t>(ty) * across_ + tx];
-      if (tile.parts == 0) continue;
-      if (tx + 1 < across_) join_border(tile, tiles_[static_cast<std::size_t>(ty) * across_ + tx + 1], false);
-      if (ty + 1 < up_) join_border(tile, tiles_[static_cast<std::size_t>(ty + 1) * across_ + tx], true);
+      const Tile& tile = tile_at(tx, ty);
+      for (const Link& link : tile.right)
+        join(parent_, tile.offset + link.here, tile_at(tx + 1, ty).offset + link.there);
+      for (const Link& link : tile.above)
+        join(parent_, tile.offset + link.here, tile_at(tx, ty + 1).offset + link.there);
     }
   }
   is_joined_ = true;
-}
-
-void Components::join_border(const Tile& a, const Tile& b, bool is_above) {
-  if (is_above) {
-    for (std::uint64_t met = starts_of(a.rows[kTile - 1] & b.rows[0]); met != 0; met &= met - 1) {
-      const int x = std::countr_zero(met);
-      join(parent_, a.offset + a.part_at(x, kTile - 1), b.offset + b.part_at(x, 0));
-    }
-    return;
-  }
-  for (int y = 0; y < kTile; ++y) {
-    if ((a.rows[y] >> 63 & b.rows[y] & 1) == 0) continue;
-    join(parent_, a.offset + a.part_at(kTile - 1, y), b.offset + b.part_at(0, y));
-  }
 }
 
 std::uint32_t Components::part_of(Cell cell) const {

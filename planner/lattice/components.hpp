@@ -10,14 +10,14 @@ namespace concord {
 
 /// Which open cells hang together, so that "there is no way" is said at once. Over sides only: a step over a
 /// corner needs both cells beside it, so it joins nothing that sides do not.
-/// Runs of cells are joined within tiles of 64 x 64; what tiles share at their borders joins those.
+/// Runs of cells are joined within tiles of 64 x 64 to parts; what meets at their borders joins these.
 class Components {
  public:
   /// Takes the grid as it is now. It must outlive this and change only along with `update`.
   explicit Components(const OpenGrid& grid);
 
-  /// Cells in `window` have changed. Costs the tiles that it touches, and with the next question the borders of
-  /// all tiles.
+  /// Cells in `window` have changed. Costs the tiles that it touches, and with the next question one look at every
+  /// part of every tile.
   void update(const Window& window);
 
   /// Whether there is a way. @pre both are open.
@@ -25,10 +25,15 @@ class Components {
 
  private:
   static constexpr int kTile = 64;
+  /// Parts on both sides of a border that meet.
+  struct Link {
+    std::uint16_t here, there;
+  };
   struct Tile {
     std::array<std::uint64_t, kTile> rows{};
     std::array<std::uint16_t, kTile> first_run{};  ///< runs in the rows below
     std::vector<std::uint16_t> part;               ///< by run
+    std::vector<Link> right, above;                ///< to the next tile's parts
     std::uint32_t parts = 0;
     std::uint32_t offset = 0;  ///< of its parts among all
 
@@ -36,8 +41,9 @@ class Components {
   };
 
   void join_runs(int tx, int ty);
+  void link(int tx, int ty);
   void join_tiles();
-  void join_border(const Tile& a, const Tile& b, bool is_above);
+  [[nodiscard]] Tile& tile_at(int tx, int ty) { return tiles_[static_cast<std::size_t>(ty) * across_ + tx]; }
   [[nodiscard]] std::uint32_t part_of(Cell cell) const;
 
   const OpenGrid& grid_;

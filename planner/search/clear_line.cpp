@@ -30,7 +30,7 @@ int ClearanceSearch::least_on_line(Cell from, Cell to) const {
   return least;
 }
 
-ClearPath ClearanceSearch::shorten(const std::vector<Cell>& cells) const {
+ClearPath ClearanceSearch::shorten(std::vector<Cell> cells) const {
   const std::size_t last = cells.size() - 1;
   // What the path costs up to each cell.
   std::vector<std::int64_t> sums(cells.size(), 0);
@@ -44,6 +44,8 @@ ClearPath ClearanceSearch::shorten(const std::vector<Cell>& cells) const {
     return least_on_line(cells[from], cells[to]) >= least;
   };
   ClearPath path;
+  path.cost = sums[last];
+  path.expanded = expanded_;
   path.turns.push_back(cells.front());
   path.least_squared = field_.reach() * field_.reach();
   for (std::size_t from = 0; from < last;) {
@@ -60,6 +62,7 @@ ClearPath ClearanceSearch::shorten(const std::vector<Cell>& cells) const {
     from = to;
   }
   path.least_squared = std::min<int>(path.least_squared, field_.squared(cells.front()));
+  path.cells = std::move(cells);
   return path;
 }
 

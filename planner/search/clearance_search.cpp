@@ -14,12 +14,6 @@ std::int64_t step_cost(int factors, bool is_diagonal) {
   return (is_diagonal ? kDiagonalStep : kStraightStep) * factors / (2 * ClearanceCost::kUnit);
 }
 
-std::int64_t at_least(Cell a, Cell b) {
-  const std::int64_t dx = std::abs(std::int64_t{a.x} - b.x);
-  const std::int64_t dy = std::abs(std::int64_t{a.y} - b.y);
-  return std::max(dx, dy) * kStraightStep + std::min(dx, dy) * (kDiagonalStep - kStraightStep);
-}
-
 /// By the nine cells around one, row by row from the lower left: the directions that a step can take.
 constexpr std::array<std::uint8_t, 512> kSteps = [] {
   std::array<std::uint8_t, 512> steps{};
@@ -57,6 +51,12 @@ ClearanceSearch::ClearanceSearch(const OpenGrid& grid, const DistanceField& fiel
   states_.resize(static_cast<std::size_t>(grid.width()) * grid.height());
 }
 
+std::int64_t ClearanceSearch::at_least(Cell from, Cell to) {
+  const std::int64_t dx = std::abs(std::int64_t{from.x} - to.x);
+  const std::int64_t dy = std::abs(std::int64_t{from.y} - to.y);
+  return std::max(dx, dy) * kStraightStep + std::min(dx, dy) * (kDiagonalStep - kStraightStep);
+}
+
 std::uint32_t ClearanceSearch::index_of(Cell cell) const {
   return static_cast<std::uint32_t>(cell.y) * static_cast<std::uint32_t>(grid_.width()) +
          static_cast<std::uint32_t>(cell.x);
@@ -80,8 +80,10 @@ void ClearanceSearch::begin(Cell goal) {
 void ClearanceSearch::reach(std::uint32_t index, Cell cell, std::int64_t cost, int direction) {
   State& state = states_[index];
   if (state.query == query_ && cost >= state.cost) return;
+  const std::int64_t total = cost + at_least(cell, goal_);
+  if (total >= limit_) return;
   state = {cost, query_, static_cast<std::uint8_t>(direction), false};
-  buckets_[static_cast<std::size_t>((cost + at_least(cell, goal_)) % kBuckets)].push_back(index);
+  buckets_[static_cast<std::size_t>(total % kBuckets)].push_back(index);
   ++waiting_;
 }
 
@@ -97,12 +99,13 @@ void ClearanceSearch::expand(std::uint32_t index, Cell cell) {
   }
 }
 
-std::optional<ClearPath> ClearanceSearch::find(Cell start, Cell goal) {
+std::optional<ClearPath> ClearanceSearch::find(Cell start, Cell goal, const Limits& limits) {
+  expanded_ = 0;
   if (!grid_.is_open(start) || !grid_.is_open(goal)) return std::nullopt;
   begin(goal);
+  limit_ = limits.cost;
   least_ = at_least(start, goal);
   reach(index_of(start), start, 0, 0);
-  std::int64_t expanded = 0;
   while (waiting_ > 0) {
     std::vector<std::uint32_t>& bucket = buckets_[static_cast<std::size_t>(least_ % kBuckets)];
     if (bucket.empty()) {
@@ -114,15 +117,11 @@ std::optional<ClearPath> ClearanceSearch::find(Cell start, Cell goal) {
     --waiting_;
     State& state = states_[index];
     if (state.is_done) continue;
+    if (expanded_ == limits.expanded) return std::nullopt;
     state.is_done = true;
-    ++expanded;
+    ++expanded_;
     const Cell cell = cell_at(index);
-    if (cell == goal) {
-      ClearPath path = shorten(trace(start, goal));
-      path.cost = state.cost;
-      path.expanded = expanded;
-      return path;
-    }
+    if (cell == goal) return shorten(trace(start, goal));
     expand(index, cell);
   }
   return std::nullopt;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -13,6 +14,7 @@ namespace concord {
 struct ClearPath {
   std::int64_t cost = 0;    ///< of the cells that were found, before they were shortened; in 1/128 of a free cell
   double length = 0;        ///< cells
+  std::vector<Cell> cells;  ///< as they were found, each a neighbour of the one before
   std::vector<Cell> turns;  ///< straight lines between cell centres that touch open cells only
   int least_squared = 0;    ///< distance of its cells to what is blocked, squared, as far as the field reaches
   std::int64_t expanded = 0;
@@ -43,11 +45,23 @@ class ClearanceSearch {
   /// Both must outlive this and be up to date when it is asked.
   ClearanceSearch(const OpenGrid& grid, const DistanceField& field);
 
-  /// Nothing where there is no way, and where either end is blocked or beyond the grid.
-  [[nodiscard]] std::optional<ClearPath> find(Cell start, Cell goal);
+  /// What a search may find and take.
+  struct Limits {
+    std::int64_t cost = std::numeric_limits<std::int64_t>::max();      ///< a path must cost less
+    std::int64_t expanded = std::numeric_limits<std::int64_t>::max();  ///< cells
+  };
+
+  /// Nothing where there is no way within the limits, and where either end is blocked or beyond the grid.
+  [[nodiscard]] std::optional<ClearPath> find(Cell start, Cell goal) { return find(start, goal, {}); }
+  [[nodiscard]] std::optional<ClearPath> find(Cell start, Cell goal, const Limits& limits);
+  /// Of the last `find`, whatever came of it.
+  [[nodiscard]] std::int64_t expanded() const { return expanded_; }
 
   /// What `find` makes of the cells that it found. @pre they are open, each a neighbour of the one before.
-  [[nodiscard]] ClearPath shorten(const std::vector<Cell>& cells) const;
+  [[nodiscard]] ClearPath shorten(std::vector<Cell> cells) const;
+
+  /// What a path between two cells costs at least.
+  [[nodiscard]] static std::int64_t at_least(Cell from, Cell to);
 
   /// What the cells cost as they are. @pre see shorten.
   [[nodiscard]] std::int64_t cost(const std::vector<Cell>& cells) const;
@@ -80,6 +94,8 @@ class ClearanceSearch {
   std::int64_t least_ = 0;    ///< total cost of the present bucket
   std::int64_t waiting_ = 0;  ///< in all buckets
   Cell goal_;
+  std::int64_t limit_ = 0;  ///< a path costs less
+  std::int64_t expanded_ = 0;
 };
 
 }  // namespace concord

@@ -80,17 +80,31 @@ std::optional<TautPath> GridPaths::any_angle(Cell start, Cell goal) {
   return pulled(grid_, *fast(start, goal));
 }
 
-std::optional<ClearPath> GridPaths::clear(Cell start, Cell goal) {
+std::optional<ClearPath> GridPaths::clear(Cell start, Cell goal, const ClearanceSearch::Limits& limits) {
   if (!connected(start, goal)) return std::nullopt;
   prepare_clear();
-  return clearance_->find(start, goal);
+  return clearance_->find(start, goal, limits);
 }
 
-void GridPaths::follow(const Window& window) {
+std::vector<bool> GridPaths::cells(const Window& window) const {
+  std::vector<bool> open;
+  for (int y = window.low.y; y <= window.high.y; ++y) {
+    for (int x = window.low.x; x <= window.high.x; ++x) open.push_back(grid_.is_open({x, y}));
+  }
+  return open;
+}
+
+bool GridPaths::follow(const Window& window, const std::vector<bool>& before) {
+  const std::vector<bool> now = cells(window);
+  if (now == before) return false;
   if (components_) components_->update(window);
   if (graph_) graph_->update(window);
   if (any_angle_) any_angle_->update(window);
   if (field_) field_->update(window);
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    if (now[i] && !before[i]) return true;
+  }
+  return false;
 }
 
 }  // namespace concord

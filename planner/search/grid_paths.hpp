@@ -34,21 +34,23 @@ class GridPaths {
   /// The shortest at any angle; where that finds none over corners, the fast path with what can be left out left out.
   [[nodiscard]] std::optional<TautPath> any_angle(Cell start, Cell goal);
   /// One that keeps away from what is blocked.
-  [[nodiscard]] std::optional<ClearPath> clear(Cell start, Cell goal);
+  [[nodiscard]] std::optional<ClearPath> clear(Cell start, Cell goal, const ClearanceSearch::Limits& limits = {});
   /// @pre prepare_clear.
   [[nodiscard]] ClearanceSearch& clearance() { return *clearance_; }
   [[nodiscard]] const DistanceField& field() const { return *field_; }
 
-  /// Calls `change(grid)`, which may set the cells of `window` and no others.
+  /// Calls `change(grid)`, which may set the cells of `window` and no others. Returns whether it opened any.
   template <class Change>
-  void update(const Window& window, Change change) {
+  bool update(const Window& window, Change change) {
+    const std::vector<bool> before = cells(window);
     change(grid_);
-    follow(window);
+    return follow(window, before);
   }
 
  private:
   void prepare_components();
-  void follow(const Window& window);
+  [[nodiscard]] std::vector<bool> cells(const Window& window) const;
+  bool follow(const Window& window, const std::vector<bool>& before);
 
   OpenGrid grid_;
   int reach_;
