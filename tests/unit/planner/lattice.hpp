@@ -66,10 +66,10 @@ inline OpenGrid to_grid(const Plain& plain) {
   return grid;
 }
 
-/// Changes some cells of a small rectangle in both. Returns where.
-inline Window random_change(std::mt19937& random, Plain& plain, OpenGrid& grid) {
+/// Changes some cells of a small rectangle in both, anywhere or with a corner at `at`. Returns where.
+inline Window random_change(std::mt19937& random, Plain& plain, OpenGrid& grid, std::optional<Cell> at = {}) {
   const auto below = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
-  Window window{{below(plain.width), below(plain.height)}, {}};
+  Window window{at.value_or(Cell{below(plain.width), below(plain.height)}), {}};
   window.high = {std::min(window.low.x + below(9), plain.width - 1),
                  std::min(window.low.y + below(9), plain.height - 1)};
   const int kind = below(3);
