@@ -86,7 +86,8 @@ std::string to_words(const ScenarioResult& result) {
 Outcome plan_scenario(const ScenarioOptions& options, const Common& common) {
   const auto scenario = load(options);
   if (!scenario) return fail(scenario.error());
-  const ScenarioResult result = run_scenario(scenario->grid, scenario->queries, options.method, kTextbook);
+  const ScenarioResult result =
+      run_scenario(scenario->grid, scenario->queries, options.method, {.textbook = kTextbook});
   if (!options.paths.empty()) {
     const auto written = write_file(options.paths, to_lines(result));
     if (!written) return fail(written.error());

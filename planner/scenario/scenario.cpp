@@ -1,9 +1,9 @@
 #include "planner/scenario/scenario.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <ctime>
-#include <limits>
 
 #include "planner/scenario/path_check.hpp"
 #include "planner/scenario/textbook.hpp"
@@ -13,7 +13,6 @@ namespace concord {
 namespace {
 
 constexpr double kEnough = 5e6;  ///< microseconds
-constexpr int kRounds = 3;
 constexpr double kLeast = 0.01;  ///< microseconds: below the clock's own resolution
 
 double now_us() {
@@ -22,14 +21,15 @@ double now_us() {
   return static_cast<double>(now.tv_sec) * 1e6 + static_cast<double>(now.tv_nsec) * 1e-3;
 }
 
-/// What it takes to read the clock, at least.
+/// What it takes to read the clock: the median.
 double clock_us() {
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < 1000; ++i) {
+  std::array<double, 1001> times;
+  for (double& time : times) {
     const double begin = now_us();
-    least = std::min(least, now_us() - begin);
+    time = now_us() - begin;
   }
-  return least;
+  std::nth_element(times.begin(), times.begin() + times.size() / 2, times.end());
+  return times[times.size() / 2];
 }
 
 class Stopwatch {
@@ -72,20 +72,17 @@ ScenarioPath ask(GridPaths& paths, Method method, const ScenarioQuery& query) {
 }
 
 /// Asks all; the median of what each took.
-void time_all(GridPaths& paths, Method method, const std::vector<ScenarioQuery>& queries, const Stopwatch& watch,
-              ScenarioResult& result) {
+void time_all(GridPaths& paths, Method method, const std::vector<ScenarioQuery>& queries, int rounds,
+              const Stopwatch& watch, ScenarioResult& result) {
   std::vector<std::vector<double>> took(queries.size());
   double spent = 0;
-  for (int round = 0; round <= kRounds && (round < 2 || spent < kEnough); ++round) {
+  for (int round = 0; round <= rounds && (round < 2 || spent < kEnough); ++round) {
     for (std::size_t i = 0; i < queries.size(); ++i) {
       ScenarioPath path;
       const double us = watch.time([&] { path = ask(paths, method, queries[i]); });
       spent += us;
-      if (round == 0) {
-        result.paths.push_back(std::move(path));
-      } else {
-        took[i].push_back(us);
-      }
+      if (round == 0) result.paths.push_back(std::move(path));
+      if (round > 0 || rounds == 0) took[i].push_back(us);
     }
   }
   for (std::vector<double>& times : took) {
@@ -142,14 +139,14 @@ double ScenarioResult::speedup_textbook() const {
 }
 
 ScenarioResult run_scenario(const OpenGrid& grid, const std::vector<ScenarioQuery>& queries, Method method,
-                            std::size_t textbook) {
+                            const ScenarioEffort& effort) {
   const Stopwatch watch;
   ScenarioResult result;
   GridPaths paths(grid);
   result.prep_ms = watch.time([&] { prepare(paths, method); }) / 1e3;
-  time_all(paths, method, queries, watch, result);
+  time_all(paths, method, queries, effort.rounds, watch, result);
   judge(grid, queries, result);
-  ask_textbook(grid, queries, textbook, watch, result);
+  ask_textbook(grid, queries, effort.textbook, watch, result);
   return result;
 }
 

@@ -36,9 +36,14 @@ struct ScenarioResult {
   [[nodiscard]] double speedup_textbook() const;
 };
 
-/// Asks every query once to warm up, and then up to three times for the time that counts, the median; a method that has
-/// taken five seconds is not asked again. Afterwards, `textbook` queries spread evenly are asked of TextbookAStar.
+struct ScenarioEffort {
+  int rounds = 3;            ///< in which times are taken, after one to warm up; 0: that one's times count
+  std::size_t textbook = 0;  ///< queries, spread evenly, that are asked of TextbookAStar, too
+};
+
+/// Asks every query in each round; the median of its times counts. A method that has taken five seconds is asked once
+/// more at most.
 [[nodiscard]] ScenarioResult run_scenario(const OpenGrid& grid, const std::vector<ScenarioQuery>& queries,
-                                          Method method, std::size_t textbook);
+                                          Method method, const ScenarioEffort& effort);
 
 }  // namespace concord

@@ -93,7 +93,7 @@ struct Sums {
 };
 
 json bench_fast(const Case& c, const std::string& warthog, Sums& sums) {
-  const ScenarioResult r = run_scenario(c.grid, c.queries, Method::kFast, kTextbook);
+  const ScenarioResult r = run_scenario(c.grid, c.queries, Method::kFast, {.textbook = kTextbook});
   sums.queries += r.paths.size();
   sums.solved += r.solved;
   sums.optimal += r.optimal;
@@ -143,7 +143,7 @@ std::map<std::string, std::vector<ScenarioQuery>> read_optima(const fs::path& cs
 }
 
 json bench_any_angle(const Case& c, const std::vector<ScenarioQuery>& optima) {
-  const ScenarioResult r = run_scenario(c.grid, optima, Method::kAnyAngle, kTextbook);
+  const ScenarioResult r = run_scenario(c.grid, optima, Method::kAnyAngle, {.textbook = kTextbook});
   return {{"mean_ratio", r.mean_ratio}, {"worst_ratio", r.worst_ratio}, {"invalid", r.invalid},
           {"solved", r.solved},         {"queries", r.paths.size()},    {"us_p50", r.us_at(0.5)},
           {"us_p99", r.us_at(0.99)},    {"prep_ms", r.prep_ms},         {"speedup_textbook", r.speedup_textbook()}};
@@ -153,7 +153,7 @@ json bench_clearance(const Case& c, Sums& sums) {
   std::vector<ScenarioQuery> some;
   const std::size_t stride = (c.queries.size() + kTextbook - 1) / kTextbook;
   for (std::size_t i = 0; i < c.queries.size(); i += stride) some.push_back(c.queries[i]);
-  const ScenarioResult r = run_scenario(c.grid, some, Method::kClearance, kTextbook);
+  const ScenarioResult r = run_scenario(c.grid, some, Method::kClearance, {.textbook = kTextbook});
   double ours = 0, uniform = 0;
   for (std::size_t i = 0; i < r.sample.size(); ++i) {
     ours += r.us[r.sample[i]];
