@@ -12,7 +12,7 @@ namespace {
 constexpr std::int64_t kPerCell = 64;
 constexpr std::int64_t kPart = 16;
 /// What took no more cells than that is as soon found anew.
-constexpr std::int64_t kSmall = 4096;
+constexpr std::int64_t kSmall = 8192;
 
 std::int64_t with_share(std::int64_t cost) {
   return static_cast<std::int64_t>(static_cast<double>(cost) * (1 + KeptPath::kShare));
