@@ -13,7 +13,7 @@ class OpenGrid {
  public:
   /// Two more fit into 16 bits, for the border.
   static constexpr int kMaxSide = 65'533;
-  static constexpr std::int64_t kMaxCells = 400'000'000;
+  static constexpr std::int64_t kMaxCells = 100'000'000;
 
   /// All cells blocked. @pre 1 <= width, height <= kMaxSide, width * height <= kMaxCells.
   OpenGrid(int width, int height);

@@ -7,27 +7,15 @@
 namespace concord {
 namespace {
 
-/// Every cell of a path over eight directions.
-std::vector<Cell> cells_of(const std::vector<Cell>& turns) {
-  std::vector<Cell> cells{turns.front()};
-  for (const Cell turn : turns) {
-    while (cells.back() != turn) {
-      const Cell at = cells.back();
-      cells.push_back({at.x + (turn.x > at.x) - (turn.x < at.x), at.y + (turn.y > at.y) - (turn.y < at.y)});
-    }
-  }
-  return cells;
-}
-
-/// From each cell straight to the last that it sees.
+/// From each turn straight to the last that it sees.
 TautPath pulled(const OpenGrid& grid, const OctilePath& path) {
-  const std::vector<Cell> cells = cells_of(path.turns);
-  TautPath taut{0, {cells.front()}, path.expanded};
-  for (std::size_t from = 0; from + 1 < cells.size();) {
-    std::size_t to = cells.size() - 1;
-    while (to > from + 1 && !sees(grid, cells[from], cells[to])) --to;
-    taut.length += std::hypot(cells[to].x - cells[from].x, cells[to].y - cells[from].y);
-    taut.turns.push_back(cells[to]);
+  const std::vector<Cell>& turns = path.turns;
+  TautPath taut{0, {turns.front()}, path.expanded};
+  for (std::size_t from = 0; from + 1 < turns.size();) {
+    std::size_t to = turns.size() - 1;
+    while (to > from + 1 && !sees(grid, turns[from], turns[to])) --to;
+    taut.length += std::hypot(turns[to].x - turns[from].x, turns[to].y - turns[from].y);
+    taut.turns.push_back(turns[to]);
     from = to;
   }
   return taut;

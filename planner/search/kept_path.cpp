@@ -10,9 +10,9 @@ namespace {
 /// A repair may look at so many cells for each cell of the stretch, and at no more than a part of what the whole path
 /// took: if it fails, little was lost.
 constexpr std::int64_t kPerCell = 64;
-constexpr std::int64_t kPart = 16;
+constexpr std::int64_t kPart = 24;
 /// What took no more cells than that is as soon found anew.
-constexpr std::int64_t kSmall = 8192;
+constexpr std::int64_t kSmall = 2048;
 
 std::int64_t with_share(std::int64_t cost) {
   return static_cast<std::int64_t>(static_cast<double>(cost) * (1 + KeptPath::kShare));
@@ -35,6 +35,7 @@ Cell nearest(const Window& window, Cell cell) {
 KeptPath::Outcome KeptPath::take(std::optional<ClearPath> found) {
   path_ = std::move(found);
   if (!path_) return Outcome::kUnreachable;
+  may_improve_ = false;
   cost_ = path_->cost;
   expanded_ = path_->expanded;
   return Outcome::kAnew;
@@ -50,19 +51,26 @@ KeptPath::Outcome KeptPath::follow(const Window& window, bool opened) {
   if (!path_) return opened ? plan(start_, goal_) : Outcome::kUnreachable;
   if (!paths_.connected(start_, goal_)) return take(std::nullopt);
   const std::optional<Stretch> stretch = near(window);
-  const bool was_open = !stretch || is_open(window);
-  if (was_open) {
+  if (!stretch || is_open(window)) {
     if (stretch) path_->cost = paths_.clearance().cost(path_->cells);
     if (path_->cost <= with_share(cost_)) {
-      if (!opened || !could_save(window)) return Outcome::kKept;
-      // Only a path that saves more than the share is looked for.
-      auto other =
-          paths_.clear(start_, goal_, {static_cast<std::int64_t>(static_cast<double>(path_->cost) / (1 + kShare))});
-      return other ? take(std::move(other)) : Outcome::kKept;
+      may_improve_ = may_improve_ || (opened && could_save(window));
+      return Outcome::kKept;
     }
   }
+  may_improve_ = may_improve_ || opened;
   if (expanded_ > kSmall && repair(*stretch)) return Outcome::kRepaired;
   return plan(start_, goal_);
+}
+
+bool KeptPath::improve() {
+  if (!path_ || !may_improve_) return false;
+  may_improve_ = false;
+  const auto enough = static_cast<std::int64_t>(static_cast<double>(path_->cost) / (1 + kShare));
+  auto other = paths_.clear(start_, goal_, {.cost = enough});
+  if (!other) return false;
+  (void)take(std::move(other));
+  return true;
 }
 
 /// The cells whose cost the window may have changed.

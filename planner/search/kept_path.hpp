@@ -7,9 +7,9 @@
 namespace concord {
 
 /// A path that keeps away from walls, kept up while the grid changes. A change that leaves it open and costs it no more
-/// than a share is no reason for another path, nor is one that would save less: paths do not flip to and fro. Else the
-/// stretch that the change spoilt is found anew between what is left of it on either side, and all of it where that
-/// costs too much.
+/// than a share is no reason for another path: paths do not flip to and fro. Else the stretch that the change spoilt is
+/// found anew between what is left of it on either side, and all of it where that costs too much. What opened elsewhere
+/// endangers nobody: whether it saves more than the share is looked for when there is time.
 class KeptPath {
  public:
   /// So much costlier than what was, or than what could be, a path is kept.
@@ -30,6 +30,9 @@ class KeptPath {
   /// Cells in `window` have changed, and `paths` has been updated; `opened` is what that returned. Where there was no
   /// way it looks again if any was opened.
   Outcome follow(const Window& window, bool opened);
+  /// Looks for a path that costs less than this one by more than the share, if any cell that was opened since can make
+  /// one. Takes as long as a search from scratch at most. Returns whether it took one.
+  bool improve();
   [[nodiscard]] const std::optional<ClearPath>& path() const { return path_; }
 
  private:
@@ -49,6 +52,7 @@ class KeptPath {
   std::optional<ClearPath> path_;
   std::int64_t cost_ = 0;      ///< of the path that was last found from scratch, then
   std::int64_t expanded_ = 0;  ///< by the last search from scratch
+  bool may_improve_ = false;
 };
 
 }  // namespace concord

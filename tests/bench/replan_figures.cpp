@@ -83,6 +83,7 @@ ReplanFigures replan_figures(const OpenGrid& grid, const std::vector<ScenarioQue
         scratch = other.clear(query.start, query.goal);
       }));
       count(figures, outcome);
+      figures.improve_us.push_back(time_us([&] { figures.improved += kept.improve() ? 1 : 0; }));
       const bool is_right = kept.path().has_value() == scratch.has_value() &&
                             (!scratch || stays_in_open_cells(followed.grid(), kept.path()->turns));
       if (!is_right) ++figures.wrong;

@@ -12,9 +12,11 @@ namespace concord {
 /// the thread, microseconds; both have to bring their distance field up to date first, and that is counted.
 struct ReplanFigures {
   std::vector<double> follow_us, scratch_us;  ///< by edit
+  std::vector<double> improve_us;             ///< afterwards, when there is time: by edit
+  std::size_t improved = 0;
   std::size_t kept = 0, repaired = 0, anew = 0, unreachable = 0;
   std::size_t wrong = 0;  ///< a path where there is none or the other way round, or one that is not open
-  double worst_cost = 1;  ///< of the path that was followed over that of the one from scratch
+  double worst_cost = 1;  ///< of the path over that of the one from scratch, after `improve`
 };
 
 /// Some of the queries, ten edits each of 3 to 9 cells a side: three of five on the path, two anywhere; one of three

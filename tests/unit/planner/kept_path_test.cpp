@@ -99,12 +99,14 @@ TEST(KeptPath, HoldsAtEveryChangeAndIsNeverMuchCostlierThanTheBest) {
     const Cell b = test::random_open(random, plain);
     if (!plain.at(a.x, a.y)) continue;
     kept.plan(a, b);
+    bool opened_since = false;
     for (int change = 0; change < 25; ++change) {
       OpenGrid copy = paths.grid();
       std::optional<Cell> at;  // every other change is on the path
       if (kept.path() && change % 2 == 0) at = kept.path()->cells[random() % kept.path()->cells.size()];
       const Window window = test::random_change(random, plain, copy, at);
       const bool opened = paths.update(window, [&](OpenGrid& grid) { grid = copy; });
+      opened_since = opened_since || opened;
       const auto before = kept.path();
       const KeptPath::Outcome outcome = kept.follow(window, opened);
       ++outcomes[static_cast<int>(outcome)];
@@ -115,6 +117,11 @@ TEST(KeptPath, HoldsAtEveryChangeAndIsNeverMuchCostlierThanTheBest) {
       expect_good(paths, *kept.path(), a, b);
       ASSERT_TRUE(outcome != KeptPath::Outcome::kKept || kept.path()->turns == before->turns);
       ASSERT_EQ(kept.path()->cost, paths.clearance().cost(kept.path()->cells));
+      // A path that nothing was opened for since is as good as it was; else it is after a look.
+      const bool improved = kept.improve();
+      ASSERT_TRUE(!improved || opened_since);
+      opened_since = false;
+      if (improved) expect_good(paths, *kept.path(), a, b);
       ASSERT_LE(static_cast<double>(kept.path()->cost), 1.25 * static_cast<double>(best->cost));
     }
   }

@@ -38,7 +38,7 @@ TEST(MovingaiMap, WhatIsNoneIsRefused) {
   EXPECT_EQ(code("type octile\nheight 70000\nwidth 3\nmap\n"), Code::kTooLarge);
   EXPECT_EQ(code("type octile\nheight 65000\nwidth 65000\nmap\n"), Code::kTooLarge);
   // A few bytes that claim to be a large map take no memory.
-  EXPECT_EQ(code("type octile\nheight 20000\nwidth 20000\nmap\n...\n"), Code::kMalformed);
+  EXPECT_EQ(code("type octile\nheight 10000\nwidth 10000\nmap\n...\n"), Code::kMalformed);
 }
 
 TEST(MovingaiScenario, IsReadAsItIsMeant) {
