@@ -132,7 +132,8 @@ void Hub::begin(Connection connection, Link& link, Session& session, const Hello
   }
   session.views.clear();
   session.told_complete.clear();
-  session.followed.clear();
+  session.path_frames.clear();
+  session.told_paths.clear();
   session.connection = connection;
   session.address = link.peer.address;
   session.device = hello.device;
@@ -158,7 +159,7 @@ void Hub::begin(Connection connection, Link& link, Session& session, const Hello
   for (const auto& [key, text] : state_) session.outbox.newest(key, text);
   audit(session, resumed ? "hello(resumed)" : "hello", id, "OK");
   ready(session);
-  handlers_.on_begin(session);
+  handlers_.on_begin(session, resumed);
 }
 
 bool Hub::is_new(Connection connection, Link& link, Session& session, std::int64_t id, const std::string& name, std::int64_t now) {

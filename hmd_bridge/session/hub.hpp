@@ -51,7 +51,7 @@ class Hub {
     /// A mesh or voxels frame, not yet looked into.
     std::function<void(const Ask&, const BinaryFrame&)> on_upload;
     std::function<void(Session&)> on_tracking;
-    std::function<void(Session&)> on_begin;  ///< also when it is resumed
+    std::function<void(Session&, bool resumed)> on_begin;
     std::function<void(const Session&)> on_end;
     /// Every refused and every changing request, in one line.
     std::function<void(const std::string&)> audit;

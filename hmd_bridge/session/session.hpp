@@ -5,7 +5,6 @@
 #include <deque>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 
 #include "access/gate.hpp"
@@ -81,8 +80,8 @@ struct Session {
   };
   std::map<std::uint32_t, Told> told_complete;
   std::int64_t told_skipped = 0;
-  std::set<std::string> followed;  ///< robots whose paths it follows
-  std::map<std::string, Frame> path_frames;
+  std::map<std::string, Frame> path_frames;  ///< robots whose paths it follows, and the frame it wants them in
+  std::map<std::string, std::pair<std::string, std::int64_t>> told_paths;  ///< id and plan number, by robot
 
   /// What it still has of stream 0 since before its connection was lost.
   struct Kept {
