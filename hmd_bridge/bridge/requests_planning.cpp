@@ -21,7 +21,7 @@ Code plan_code(const std::string& status) {
 
 /// Asks the planner and answers with the path in the frame that was asked for.
 template <class PathAnswerOf>
-void plan(Desk& desk, const Ask& ask, PathRequest request, Frame frame, PathAnswerOf answer_of) {
+void plan(Desk& desk, const Ask& ask, concord::PathRequest request, Frame frame, PathAnswerOf answer_of) {
   if (desk.world.agent(request.robot) == nullptr) return desk.hub.refuse(ask, Code::kNoRobot, "no robot is called " + request.robot);
   request.id = desk.id(ask);
   const std::string id = request.id;

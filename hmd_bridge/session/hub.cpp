@@ -286,6 +286,10 @@ void Hub::tick(std::int64_t now) {
     if (!link.session && !link.closing && now - link.opened > kHelloWithin) {
       close(connection, link, 1008, Code::kTimeout, "no hello within 5 s");
     }
+    const Session* session = link.session ? find(*link.session) : nullptr;
+    if (session != nullptr && session->outbox.overflowed()) {
+      close(connection, link, 1013, Code::kTooLarge, "answers were not taken in time");
+    }
   }
   std::vector<std::pair<std::int64_t, std::int64_t>> parked;  // since, number
   for (const auto& [number, session] : sessions_) {

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "bus/process.hpp"
+
+namespace concord {
+class LcmBus;
+}
+
+namespace concord::hmd {
+
+/// The bridge as a process: the node, the server in front of it, one loop for both.
+class BridgeProcess {
+ public:
+  /// `web`: the folder of the built web client. @throws ConfigError for what of the site file cannot be used.
+  BridgeProcess(const NodeContext& context, const std::filesystem::path& web);
+  ~BridgeProcess();
+  BridgeProcess(const BridgeProcess&) = delete;
+  BridgeProcess& operator=(const BridgeProcess&) = delete;
+
+  /// Waits some milliseconds for clients and for the bus, and serves both.
+  void wait(LcmBus& bus);
+  [[nodiscard]] std::uint16_t port() const;
+
+ private:
+  class Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+/// Where the certificate and the key of a site are.
+[[nodiscard]] std::filesystem::path certificate_file(const Site& site);
+[[nodiscard]] std::filesystem::path key_file(const Site& site);
+[[nodiscard]] std::filesystem::path token_file(const Site& site);
+
+}  // namespace concord::hmd

@@ -1,0 +1,106 @@
+#include "server/server_core.hpp"
+
+#include <boost/asio/ip/address.hpp>
+
+#include "bus/site.hpp"
+
+namespace concord::hmd {
+namespace {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+
+void use_certificate(asio::ssl::context& tls, const Server::Config& config) {
+  boost::system::error_code error;
+  tls.set_options(asio::ssl::context::default_workarounds | asio::ssl::context::no_sslv2 | asio::ssl::context::no_sslv3 |
+                  asio::ssl::context::no_tlsv1 | asio::ssl::context::no_tlsv1_1);
+  tls.use_certificate_chain_file(config.certificate.string(), error);
+  if (error) throw ConfigError("cannot use the certificate " + config.certificate.string() + ": " + error.message() + "; concord cert makes one");
+  tls.use_private_key_file(config.key.string(), asio::ssl::context::pem, error);
+  if (error) throw ConfigError("cannot use the key " + config.key.string() + ": " + error.message() + "; concord cert makes one");
+}
+
+}  // namespace
+
+Server::Core::Core(asio::io_context& io, Hub& hub_in, Gate& gate_in, TokenStore& tokens_in, const StaticFiles& files_in, Config config_in,
+                   std::function<std::int64_t()> now_in)
+    : hub(hub_in),
+      gate(gate_in),
+      tokens(tokens_in),
+      files(files_in),
+      config(std::move(config_in)),
+      now(std::move(now_in)),
+      tls(asio::ssl::context::tls_server),
+      acceptor(io) {
+  if (config.tls) use_certificate(tls, config);
+  boost::system::error_code error;
+  const auto address = asio::ip::make_address(config.listen == "localhost" ? "127.0.0.1" : config.listen, error);
+  if (error) throw ConfigError("bridge.listen " + config.listen + " is no address");
+  if (!config.tls && !address.is_loopback()) throw ConfigError("beyond this machine only with TLS");
+  const tcp::endpoint endpoint(address, config.port);
+  acceptor.open(endpoint.protocol(), error);
+  if (!error) acceptor.set_option(asio::socket_base::reuse_address(true), error);
+  if (!error) acceptor.bind(endpoint, error);
+  if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
+  if (error) throw ConfigError("cannot listen on " + config.listen + " port " + std::to_string(config.port) + ": " + error.message());
+}
+
+void Server::Core::accept() {
+  acceptor.async_accept([self = shared_from_this()](const boost::system::error_code& error, tcp::socket socket) {
+    if (!self->acceptor.is_open()) return;
+    if (!error) {
+      boost::system::error_code ignored;
+      const auto remote = socket.remote_endpoint(ignored);
+      const std::string address = ignored ? "" : remote.address().to_string();
+      if (auto place = address.empty() ? nullptr : self->admit(address)) {
+        socket.set_option(tcp::no_delay(true), ignored);
+        if (self->config.tls) {
+          serve_tls(self, std::move(socket), address, std::move(place));
+        } else {
+          serve_plain(self, std::move(socket), address, std::move(place));
+        }
+      }
+    }
+    self->accept();
+  });
+}
+
+std::shared_ptr<void> Server::Core::admit(const std::string& address) {
+  const auto same = by_address_.find(address);
+  if (connections_ >= config.max_connections) return nullptr;
+  if (!is_loopback(address) && same != by_address_.end() && same->second >= config.max_connections_per_address) return nullptr;
+  ++connections_;
+  ++by_address_[address];
+  return std::shared_ptr<void>(nullptr, [self = shared_from_this(), address](void*) {
+    --self->connections_;
+    if (--self->by_address_[address] == 0) self->by_address_.erase(address);
+  });
+}
+
+void Server::Core::pump() {
+  for (const Hub::Connection connection : hub.take_ready()) {
+    const auto it = sockets_.find(connection);
+    if (it == sockets_.end()) continue;
+    if (const auto socket = it->second.lock()) socket->pump();
+  }
+}
+
+void Server::Core::stop() {
+  boost::system::error_code ignored;
+  acceptor.close(ignored);
+  hub.end();
+  pump();
+}
+
+Server::Server(asio::io_context& io, Hub& hub, Gate& gate, TokenStore& tokens, const StaticFiles& files, Config config,
+               std::function<std::int64_t()> now)
+    : core_(std::make_shared<Core>(io, hub, gate, tokens, files, std::move(config), std::move(now))) {
+  core_->accept();
+}
+
+Server::~Server() = default;
+std::uint16_t Server::port() const { return core_->acceptor.local_endpoint().port(); }
+void Server::pump() { core_->pump(); }
+void Server::stop() { core_->stop(); }
+
+}  // namespace concord::hmd
