@@ -21,7 +21,8 @@ bool is_loopback(const std::string& address) {
 
 bool is_local_host(const std::string& host) {
   const std::string name = lower(host.substr(0, host.starts_with('[') ? host.find(']') + 1 : host.find(':')));
-  return name == "localhost" || name == "[::1]" || name.starts_with("127.");
+  const bool dotted = std::all_of(name.begin(), name.end(), [](char c) { return (c >= '0' && c <= '9') || c == '.'; });
+  return name == "localhost" || name == "[::1]" || (dotted && name.starts_with("127."));
 }
 
 bool origin_allowed(const std::string& origin, const std::string& scheme, const std::string& host,
