@@ -23,23 +23,17 @@ ClientView::ClientView(const BlockStore& store, ViewRegion region, std::int64_t 
 void ClientView::look(const BlockStore& store, ViewRegion region) {
   region_ = std::move(region);
   lacking_.clear();
+  forgotten_.clear();
   seen_ = 0;
-  const auto gone = [&](const BlockKey& key) { return !hmd::in_view(region_, key); };
-  // What was to be forgotten may be back in view: it is sent again, for the client may have dropped it.
-  for (auto it = held_.begin(); it != held_.end();) {
-    if (!gone(it->first)) {
-      ++it;
-      continue;
-    }
-    forgotten_.push_back(it->first);
-    it = held_.erase(it);
+  // What is out of view is still with the client until it is told: it may come back before that.
+  for (const auto& [key, revision] : held_) {
+    if (!hmd::in_view(region_, key)) forgotten_.push_back(key);
   }
   store.for_each([&](const BlockKey& key, std::int64_t revision, bool filled) {
-    if (gone(key)) return;
+    if (!hmd::in_view(region_, key)) return;
     if (filled) ++seen_;
     if (held(key) < revision && (filled || held_.contains(key))) want(key);
   });
-  std::erase_if(forgotten_, [&](const BlockKey& key) { return !gone(key) && lacking_.contains({distance_to(region_, key), key}); });
 }
 
 void ClientView::want(const BlockKey& key) { lacking_.emplace(distance_to(region_, key), key); }
@@ -86,6 +80,7 @@ std::vector<BlockKey> ClientView::take_forgotten() {
   std::erase_if(forgotten_, [&](const BlockKey& key) {
     if (key.level != level) return false;
     taken.push_back(key);
+    held_.erase(key);
     return true;
   });
   return taken;
