@@ -4,6 +4,7 @@
 #include <boost/asio/posix/stream_descriptor.hpp>
 #include <spdlog/spdlog.h>
 
+#include "access/site_files.hpp"
 #include "access/token_store.hpp"
 #include "bridge_node.hpp"
 #include "bus/lcm_bus.hpp"
@@ -41,14 +42,6 @@ Server::Config server_config(const Site& site) {
 }
 
 }  // namespace
-
-std::filesystem::path certificate_file(const Site& site) {
-  return site.bridge.certificate.empty() ? site.state / "bridge" / "cert.pem" : site.bridge.certificate;
-}
-std::filesystem::path key_file(const Site& site) {
-  return site.bridge.key.empty() ? site.state / "bridge" / "key.pem" : site.bridge.key;
-}
-std::filesystem::path token_file(const Site& site) { return site.state / "bridge" / "tokens.db"; }
 
 class BridgeProcess::Parts {
  public:

@@ -29,9 +29,4 @@ class BridgeProcess {
   std::unique_ptr<Parts> parts_;
 };
 
-/// Where the certificate and the key of a site are.
-[[nodiscard]] std::filesystem::path certificate_file(const Site& site);
-[[nodiscard]] std::filesystem::path key_file(const Site& site);
-[[nodiscard]] std::filesystem::path token_file(const Site& site);
-
 }  // namespace concord::hmd

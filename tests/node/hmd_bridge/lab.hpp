@@ -56,7 +56,8 @@ class Client {
   Json hello(const std::string& agent = "", const std::string& frame_id = "local1");
   template <class Request>
   Json ask(const Request& request) {
-    return ask_text(++id_, request_text(id_, request));
+    ++id_;
+    return ask_text(id_, request_text(id_, request));
   }
   Json ask_text(std::int64_t id, const std::string& text);
   Json upload(FrameKind kind, std::uint32_t count, std::int64_t sequence, const Bytes& payload);
