@@ -68,6 +68,10 @@ class Rig::Parts {
       io.poll();
       bus.spin_once(0);
       server.pump();
+      if (awaited && awaited(node)) {
+        awaited = nullptr;
+        reached.set_value();
+      }
     }
     server.stop();
     io.run_for(std::chrono::milliseconds(50));
@@ -81,6 +85,8 @@ class Rig::Parts {
   std::uint16_t port = 0;
   BridgeNode* the_node = nullptr;
   Bus* the_bus = nullptr;
+  std::function<bool(BridgeNode&)> awaited;  ///< looked at in the server's thread
+  std::promise<void> reached;
   std::thread thread;
 };
 
@@ -97,6 +103,16 @@ void Rig::in_server(const std::function<void(BridgeNode&, Bus&)>& what) {
     done.set_value();
   });
   done.get_future().get();
+}
+
+void Rig::wait_for(const std::function<bool(BridgeNode&)>& done) {
+  std::future<void> reached;
+  in_server([&](BridgeNode&, Bus&) {
+    parts_->reached = {};
+    reached = parts_->reached.get_future();
+    parts_->awaited = done;
+  });
+  reached.get();
 }
 
 }  // namespace concord::hmd

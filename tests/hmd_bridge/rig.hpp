@@ -29,6 +29,8 @@ class Rig {
   [[nodiscard]] std::uint16_t port() const;
   /// Runs something in the server's thread, and waits for it.
   void in_server(const std::function<void(BridgeNode&, Bus&)>& what);
+  /// Returns once `done` holds in the server's thread, where it is looked at after everything that happens.
+  void wait_for(const std::function<bool(BridgeNode&)>& done);
   [[nodiscard]] const std::filesystem::path& folder() const;
   [[nodiscard]] TokenStore& tokens();
 

@@ -536,9 +536,9 @@ TEST_F(Working, MapsAreSavedListedAndLoaded) {
   EXPECT_EQ(saved["answer"]["files"].size(), 2u);
   EXPECT_CODE(ana.ask(save), "EXISTS");
   EXPECT_EQ(ana.ask(MapsRequest{})["answer"]["maps"].size(), 2u);
-  EXPECT_CODE(ana.ask_text(ana.next_id(), R"({"id":)" + std::to_string(ana.last_id()) +
-                                              R"(,"request":"save","body":{"map":"../x","formats":["bt"],"overwrite":false}})"),
-              "BAD_MESSAGE");
+  const std::int64_t id = ana.next_id();
+  const Json climb = {{"id", id}, {"request", "save"}, {"body", {{"map", "../x"}, {"formats", {"bt"}}, {"overwrite", false}}}};
+  EXPECT_CODE(ana.ask_text(id, climb.dump()), "BAD_MESSAGE") << "no name is a path";
   EXPECT_CODE(ana.ask(LoadRequest{"hall", Format::kBt, "copy"}), "OK");
   EXPECT_CODE(ana.ask(LoadRequest{"hall", Format::kBt, "copy"}), "EXISTS");
   EXPECT_CODE(ana.ask(LoadRequest{"none", {}, {}}), "NOT_FOUND");
@@ -546,8 +546,10 @@ TEST_F(Working, MapsAreSavedListedAndLoaded) {
   EXPECT_CODE(ana.ask(LoadRequest{"broken", {}, {}}), "CORRUPT");
 }
 
-TEST_F(Working, WhatNobodyAnswersIsATimeout) {
-  lab.merge.reset();
+TEST(BridgeAlone, WhatNobodyAnswersIsATimeout) {
+  Lab lab(Lab::kWithoutMerge);
+  Client ana(lab);
+  EXPECT_CODE(ana.hello(), "OK");
   EXPECT_CODE(ana.ask(add(box(1, 1, 0.2, 1.5, 1.5, 0.5))), "TIMEOUT");
 }
 

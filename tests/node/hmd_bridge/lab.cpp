@@ -6,7 +6,7 @@
 
 namespace concord::hmd {
 
-Lab::Lab() {
+Lab::Lab(With with) {
   std::string pattern = "/dev/shm/concord-lab-XXXXXX";
   if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no /dev/shm");
   site.state = pattern;
@@ -18,7 +18,7 @@ Lab::Lab() {
   const auto context = [&](const char* process) { return NodeContext{*bus, counters, site, process, bus->now()}; };
   for (const char* process : {"ingest", "merge", "planner"}) publish_status_each_second(context(process));
   ingest = std::make_unique<IngestNode>(context("ingest"));
-  merge = std::make_unique<MergeNode>(context("merge"));
+  if (with == kAll) merge = std::make_unique<MergeNode>(context("merge"));
   planner = std::make_unique<PlannerNode>(context("planner"));
   gate = std::make_unique<Gate>(random_secret);
   Hub::Config config = hub_config(site);

@@ -19,7 +19,8 @@ class Lab {
  public:
   static constexpr std::int64_t kStart = 1'700'000'000'000'000;
 
-  Lab();
+  enum With { kAll, kWithoutMerge };
+  explicit Lab(With with = kAll);
   ~Lab();
   Lab(const Lab&) = delete;
   Lab& operator=(const Lab&) = delete;
