@@ -45,6 +45,7 @@ BridgeNode::BridgeNode(const NodeContext& context, Gate& gate, const Hub::Config
       own_maps_(desk_) {
   world_.on_path = [this](const concord::Path& path) { on_path(path); };
   hear_parts();
+  hear_alignments(desk_);
   context_.bus.every(kTick, [this] {
     hub_.tick(context_.bus.now());
     context_.counters.set("clients", static_cast<std::int64_t>(hub_.connected()));

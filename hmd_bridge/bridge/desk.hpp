@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -84,6 +85,8 @@ class Desk {
   std::map<std::string, MapList> maps;
   std::map<std::string, concord::Path> paths;
   std::set<std::string> watched;  ///< requests whose path or list of maps is waited for
+
+  std::shared_ptr<void> alignments;  ///< what requests_align.cpp keeps of what align says
 
   /// Where an agent was before this session placed it: for align_undo.
   struct Placed {

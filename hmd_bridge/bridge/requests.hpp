@@ -56,4 +56,7 @@ void work_on(Desk& desk, const Ask& ask, const MapsRequest& request);
 void work_on(Desk& desk, const Ask& ask, const LoadRequest& request);
 void work_on(Desk& desk, const Ask& ask, const SendMapRequest& request);
 
+/// Hears what the align process says; once, at the start.
+void hear_alignments(Desk& desk);
+
 }  // namespace concord::hmd
