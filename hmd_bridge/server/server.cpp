@@ -71,7 +71,7 @@ std::shared_ptr<void> Server::Core::admit(const std::string& address) {
   if (!is_loopback(address) && same != by_address_.end() && same->second >= config.max_connections_per_address) return nullptr;
   ++connections_;
   ++by_address_[address];
-  return std::shared_ptr<void>(nullptr, [self = shared_from_this(), address](void*) {
+  return std::shared_ptr<void>(this, [self = shared_from_this(), address](void*) {
     --self->connections_;
     if (--self->by_address_[address] == 0) self->by_address_.erase(address);
   });
