@@ -98,7 +98,7 @@ Server::Server(asio::io_context& io, Hub& hub, Gate& gate, TokenStore& tokens, c
   core_->accept();
 }
 
-Server::~Server() = default;
+Server::~Server() { core_->over = true; }
 std::uint16_t Server::port() const { return core_->acceptor.local_endpoint().port(); }
 void Server::pump() { core_->pump(); }
 void Server::stop() { core_->stop(); }

@@ -46,6 +46,7 @@ class Server::Core : public std::enable_shared_from_this<Server::Core> {
   std::function<std::int64_t()> now;
   boost::asio::ssl::context tls;
   boost::asio::ip::tcp::acceptor acceptor;
+  bool over = false;  ///< the server has gone, and the hub may have: connections that are left end by themselves
 
  private:
   std::map<Hub::Connection, std::weak_ptr<Socket>> sockets_;

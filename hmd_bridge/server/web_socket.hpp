@@ -113,10 +113,13 @@ class WebSocket final : public Socket, public std::enable_shared_from_this<WebSo
 
   void leave() {
     if (!connection_) return;
-    core_->hub.closed(*connection_, core_->now());
-    core_->close(*connection_);
+    if (!core_->over) {
+      core_->hub.closed(*connection_, core_->now());
+      core_->close(*connection_);
+    }
     connection_.reset();
-    cut_.cancel();
+    boost::system::error_code ignored;
+    cut_.cancel(ignored);
   }
 
   std::shared_ptr<Server::Core> core_;

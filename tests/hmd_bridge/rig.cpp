@@ -24,9 +24,9 @@ class Rig::Parts {
     std::filesystem::create_directories(folder / "web");
     std::ofstream(folder / "web" / "index.html") << "<!doctype html><title>page</title>";
     std::ofstream(folder / "secret.txt") << "secret";
-    std::promise<void> ready;
-    thread = std::thread([this, &options, &ready] { run(options, ready); });
-    ready.get_future().get();
+    std::future<void> up = ready.get_future();
+    thread = std::thread([this, options] { run(options); });
+    up.get();
   }
   ~Parts() {
     stop = true;
@@ -40,7 +40,7 @@ class Rig::Parts {
     return folder = pattern;
   }
 
-  void run(const Options& options, std::promise<void>& ready) {
+  void run(const Options& options) {
     site.state = folder;
     Counters counters;
     LcmBus bus("memq://", counters);
@@ -86,7 +86,7 @@ class Rig::Parts {
   BridgeNode* the_node = nullptr;
   Bus* the_bus = nullptr;
   std::function<bool(BridgeNode&)> awaited;  ///< looked at in the server's thread
-  std::promise<void> reached;
+  std::promise<void> ready, reached;
   std::thread thread;
 };
 
@@ -97,12 +97,12 @@ const std::filesystem::path& Rig::folder() const { return parts_->folder; }
 TokenStore& Rig::tokens() { return parts_->tokens; }
 
 void Rig::in_server(const std::function<void(BridgeNode&, Bus&)>& what) {
-  std::promise<void> done;
-  boost::asio::post(parts_->io, [&] {
+  const auto done = std::make_shared<std::promise<void>>();
+  boost::asio::post(parts_->io, [&, done] {
     what(*parts_->the_node, *parts_->the_bus);
-    done.set_value();
+    done->set_value();
   });
-  done.get_future().get();
+  done->get_future().get();
 }
 
 void Rig::wait_for(const std::function<bool(BridgeNode&)>& done) {
