@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
-import { FrameError, HEADER_BYTES, inflate, meshFrame, meshPayload, readFrame, readHeader, type RoomMesh } from "../../../hmd_bridge/web/src/protocol/frames";
+import { FrameError, HEADER_BYTES, inflate, meshFrame, meshPayload, packPayload, readFrame, readHeader, type RoomMesh } from "../../../hmd_bridge/web/src/protocol/frames";
 import { checkAnswer, checkEvent, checkNotice, checkRequest } from "../../../hmd_bridge/web/generated/messages";
 import { answerTo, readText, TextError } from "../../../hmd_bridge/web/src/protocol/envelope";
 import { goldenFolder } from "../support/paths";
@@ -67,7 +67,7 @@ test("mesh frames are written as the golden ones", async () => {
   const cases: [string, RoomMesh[], number, number][] = [["mesh", [triangle], 14, 0], ["mesh that is gone", [gone], 15, 1], ["an empty look", [], 16, 2]];
   for (const [name, meshes, id, sequence] of cases) {
     const row = rows.find((each) => each.name === name)!;
-    const frame = await meshFrame(id, sequence, meshes.length, meshPayload([...sensor], meshes));
+    const frame = meshFrame(id, sequence, meshes.length, await packPayload(meshPayload([...sensor], meshes)));
     const golden = bytesOf(row.hex);
     const header = (bytes: Uint8Array) => [bytes[0], ...bytes.slice(2, HEADER_BYTES)];
     assert.deepEqual(header(frame), header(golden), name);

@@ -100,10 +100,10 @@ export class Link {
     return { answer: answerTo(name, fields), frame };
   }
 
-  /** Sends a binary frame that `make` makes for its id. */
-  async upload(make: (id: number) => Promise<Uint8Array<ArrayBuffer>>): Promise<Answers["upload_mesh"]> {
+  /** Sends a mesh frame that `make` makes for its id. */
+  async upload(make: (id: number) => Uint8Array<ArrayBuffer>): Promise<Answers["upload_mesh"]> {
     const id = ++this.lastId;
-    const { fields } = await this.ask(id, "upload_mesh", await make(id));
+    const { fields } = await this.ask(id, "upload_mesh", make(id));
     return answerTo("upload_mesh", fields);
   }
 
@@ -113,10 +113,9 @@ export class Link {
   }
 
   private ask(id: number, name: keyof Answers, data: Pending["data"]): ReturnType<typeof this.wait> {
-    const ready = this.state.value.state === "ready";
-    if (!ready && !this.hello) return Promise.reject(new Error("There is no connection to the server."));
+    if (this.state.value.state !== "ready") return Promise.reject(new Error("There is no connection to the server now."));
     const answered = this.wait(id, name, data);
-    if (ready) this.socket?.send(data);
+    this.socket?.send(data);
     return answered;
   }
 
@@ -151,10 +150,9 @@ export class Link {
       const { epoch, revision } = this.lastComplete ?? { epoch: this.hello.epoch, revision: 0 };
       body.resume = { session: this.hello.session, epoch, revision };
     }
-    this.wait(id, "hello", "").then(
-      ({ fields }) => this.welcome(answerTo("hello", fields)),
-      (error: unknown) => this.refused(error),
-    );
+    this.wait(id, "hello", "")
+      .then(({ fields }) => this.welcome(answerTo("hello", fields)))
+      .catch((error: unknown) => this.refused(error));
     socket.send(JSON.stringify({ id, request: "hello", body }));
   }
 
@@ -165,8 +163,8 @@ export class Link {
     if (!hello.resumed) this.abandon("The connection was lost; the server may have done this all the same: see History.");
     this.state.set({ state: "ready", hello });
     this.grant();
-    this.onReady(hello, hello.resumed && sameEpoch);
     for (const { data } of this.pending.values()) this.socket?.send(data);
+    this.onReady(hello, hello.resumed && sameEpoch);
     this.heardAt = this.options.now();
     this.check(this.socket);
   }

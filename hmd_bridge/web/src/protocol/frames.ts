@@ -285,18 +285,29 @@ export function meshPayload(sensor: SensorPose, meshes: readonly RoomMesh[]): Ui
 
 const KIND_MESH = 65;
 
-/** Puts the header before a payload, deflated where that makes it smaller. */
-export async function meshFrame(request: number, sequence: number, meshes: number, payload: Uint8Array<ArrayBuffer>): Promise<Uint8Array<ArrayBuffer>> {
-  const packed = await deflate(payload);
-  const smaller = packed.length < payload.length;
-  const body = smaller ? packed : payload;
+/** A payload that is on its way into a frame. */
+export interface PackedPayload {
+  deflated: boolean;
+  body: Uint8Array;
+  /** Bytes, inflated. */
+  size: number;
+}
+
+/** Deflates where that makes it smaller. */
+export async function packPayload(payload: Uint8Array<ArrayBuffer>): Promise<PackedPayload> {
+  const body = await deflate(payload);
+  return body.length < payload.length ? { deflated: true, body, size: payload.length } : { deflated: false, body: payload, size: payload.length };
+}
+
+/** @param meshes how many there are in the payload */
+export function meshFrame(request: number, sequence: number, meshes: number, { deflated, body, size }: PackedPayload): Uint8Array<ArrayBuffer> {
   const frame = new Uint8Array(HEADER_BYTES + body.length);
   const view = new DataView(frame.buffer);
   view.setUint8(0, KIND_MESH);
-  view.setUint8(1, smaller ? DEFLATED : 0);
+  view.setUint8(1, deflated ? DEFLATED : 0);
   view.setUint32(4, request, true);
   view.setUint32(8, meshes, true);
-  view.setUint32(12, payload.length, true);
+  view.setUint32(12, size, true);
   view.setBigUint64(16, BigInt(sequence), true);
   frame.set(body, HEADER_BYTES);
   return frame;
