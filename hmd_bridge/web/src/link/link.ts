@@ -35,6 +35,9 @@ export type LinkState =
   | { state: "lost"; why: string; seconds: number }
   | { state: "refused"; why: string };
 
+/** As Link.request(). */
+export type Ask = <K extends keyof Requests>(name: K, body: Requests[K]) => Promise<Answers[K]>;
+
 type AskedFrame = PointsFrame | CellsFrame;
 interface Pending {
   name: keyof Answers;

@@ -9,9 +9,9 @@ export interface DetailBudget {
 const kFine = 8;
 const kMiddle = 20;
 
-/** Measured on the devices; a browser on a desk has more. */
+/** What headsets draw at their frame rate; a browser on a desk has more to give. */
 export function budgetOf(userAgent: string): DetailBudget {
-  if (/HoloLens|Windows NT.*Xbox|Edg.*; ARM/i.test(userAgent)) return { triangles: 400_000, radii: [kFine, kMiddle, 60] };
+  if (/HoloLens|Windows NT[^)]*ARM/i.test(userAgent)) return { triangles: 400_000, radii: [kFine, kMiddle, 60] };
   if (/OculusBrowser|Quest/i.test(userAgent)) return { triangles: 1_000_000, radii: [kFine, kMiddle, 60] };
   return { triangles: 3_000_000, radii: [20, 50, 200] };
 }
