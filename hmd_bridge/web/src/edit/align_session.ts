@@ -12,6 +12,8 @@ export interface Aligning {
   target: string | undefined;
   /** x y z of each, metres, in the source's frame. */
   points: Float32Array;
+  /** The same of the target; none of the map as a whole. */
+  targetPoints: Float32Array | null;
   /** T_target_source as it is placed now. */
   guess: Pose;
   offer: Answers["align"] | null;
@@ -34,7 +36,9 @@ export class AlignSession {
   /** @param guess where the source is thought to be in the target; from there it is moved by hand. */
   async begin(source: string, target: string | undefined, guess: Pose = kIdentity): Promise<void> {
     const frame = await this.news.tell(this.minimap(source, kResolution), () => null);
-    if (frame) this.current.set({ source, target, points: frame.points, guess, offer: null, busy: false });
+    if (!frame) return;
+    const targetFrame = target === undefined ? null : await this.news.tell(this.minimap(target, kResolution), () => null);
+    this.current.set({ source, target, points: frame.points, targetPoints: targetFrame?.points ?? null, guess, offer: null, busy: false });
   }
 
   /** Puts it elsewhere by hand; an offer for another place is withdrawn. It stays upright. */

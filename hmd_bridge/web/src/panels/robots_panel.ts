@@ -1,8 +1,8 @@
 /** Robots: their paths, where they shall go, where they really are, and what stands in their way. */
 import type { App } from "../app";
-import type { Path, RobotPose } from "../../generated/messages";
+import type { RobotPose } from "../../generated/messages";
 import { button, el, live, none, section } from "../base/dom";
-import { fromYaw, type Vec3 } from "../base/vec";
+import { correct, pathWords, send, whatIf } from "../edit/robot_acts";
 import { clearanceColour } from "../scene/ribbon";
 
 export function robotsPanel(app: App): HTMLElement {
@@ -25,7 +25,7 @@ export function robotsPanel(app: App): HTMLElement {
 function legend(): HTMLElement {
   const rows: [number, string][] = [[0.1, "tight"], [0.45, "fair"], [1, "wide"]];
   return el("p", { class: "legend" }, ...rows.flatMap(([clearance, words]) => {
-    const [r, g, b] = clearanceColour(clearance).map((c) => Math.round(c ** (1 / 2.2) * 255));
+    const [r, g, b] = clearanceColour(clearance).map((c) => Math.round(c * 255));
     return [el("i", { style: `background: rgb(${r} ${g} ${b})` }), words];
   }));
 }
@@ -52,34 +52,3 @@ function whereabouts(app: App, robot: string, aligned: boolean): HTMLElement {
     return [`${x.toFixed(1)}, ${y.toFixed(1)} m${pose.stale ? ", silent" : ""}`];
   }, { class: "quiet" });
 }
-
-export function pathWords({ status, message, length, clearance, plan_number }: Path): string {
-  if (status !== "OK") return message || status;
-  return `${length.toFixed(1)} m, at least ${clearance.toFixed(2)} m of room${plan_number > 1 ? `, planned ${plan_number} times` : ""}`;
-}
-
-async function whatIf(app: App, robot: string): Promise<void> {
-  const goal = await app.editor.askPoint(`Click where ${robot} would go.`);
-  if (!goal) return;
-  const answer = await app.news.tell(app.ask("plan", { robot, frame: "map", goal }), ({ path }) => pathWords(path));
-  if (answer) app.world.setPath(answer.path);
-}
-
-async function send(app: App, robot: string): Promise<void> {
-  const goal = await app.editor.askPoint(`Click where ${robot} shall go.`);
-  if (!goal) return;
-  const T_frame_goal = { position: goal, rotation: fromYaw(0) };
-  const answer = await app.news.tell(app.ask("goal", { robot, frame: "map", T_frame_goal }), ({ path }) => `${robot} is on its way: ${pathWords(path)}.`);
-  if (answer) app.world.setPath(answer.path);
-}
-
-async function correct(app: App, robot: string): Promise<void> {
-  const at = await app.editor.askPoint(`Click where ${robot} really stands.`);
-  const ahead = at && (await app.editor.askPoint(`Click a place straight ahead of ${robot}.`));
-  if (!ahead) return;
-  const position: Vec3 = [at[0], at[1], at[2]];
-  const T_frame_base = { position, rotation: fromYaw(Math.atan2(ahead[1] - at[1], ahead[0] - at[0])) };
-  const utime = app.link.clock.utime(Date.now());
-  await app.news.tell(app.ask("robot_correct", { robot, frame: "map", T_frame_base, utime }), () => `${robot} is placed there, and its map with it.`);
-}
-

@@ -66,7 +66,7 @@ export function pathObject(path: Path): Mesh {
   const { positions, colours, indices } = ribbon(path.points, kRibbonWidth, kRibbonLift);
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(positions, 3));
-  geometry.setAttribute("color", new BufferAttribute(colours, 3));
+  geometry.setAttribute("color", new BufferAttribute(colours.map((c) => c ** 2.2), 3)); // three.js counts in linear light
   geometry.setIndex(indices);
   const mesh = new Mesh(geometry, new MeshBasicMaterial({ vertexColors: true, side: DoubleSide, depthTest: false, transparent: true, opacity: 0.95 }));
   mesh.renderOrder = 9;

@@ -26,9 +26,9 @@ varying float vHeight;
 flat varying float vFace;
 
 vec3 ramp(float t) {
-  vec3 low = vec3(0.17, 0.31, 0.42);
-  vec3 mid = vec3(0.47, 0.62, 0.60);
-  vec3 high = vec3(0.90, 0.85, 0.73);
+  vec3 low = vec3(0.035, 0.085, 0.15);
+  vec3 mid = vec3(0.15, 0.29, 0.31);
+  vec3 high = vec3(0.72, 0.60, 0.42);
   return t < 0.5 ? mix(low, mid, t * 2.0) : mix(mid, high, t * 2.0 - 1.0);
 }
 
