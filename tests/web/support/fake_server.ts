@@ -183,6 +183,7 @@ export class FakeServer {
     redo: ({ edit }) => this.turn(edit, true),
     history: () => ({ operations: this.operations }),
     instances: () => ({ instances: [], in_all: 0 }),
+    label: () => ({ label: 3, instance: 1, voxels: 640 }),
     lease_hold: () => ({}),
     lease_free: () => ({}),
     place: () => ({ revision: 2 }),

@@ -27,9 +27,11 @@ export class Desk {
     private readonly app: App,
     private readonly canvas: HTMLCanvasElement,
     side: HTMLElement,
+    /** Whether this device is an agent. */
+    private readonly maps: boolean,
   ) {
     this.camera = new DeskCamera(app.stage, canvas);
-    app.eyes = { here: () => this.camera.centre, lookAt: (low, high) => this.camera.frameBox(low, high) };
+    this.takeOver();
     side.replaceChildren(
       tabs([
         { title: "Map", make: () => mapPanel(app) },
@@ -44,6 +46,14 @@ export class Desk {
     this.frameFirstView();
     app.stage.onFrame.add(() => app.layers.setCentre(app.stage.renderer.xr.isPresenting ? app.eyes.here() : this.camera.centre));
     setInterval(() => this.sayWhere(), kTrackingMs);
+  }
+
+  /** The person is at the desk, or is back. */
+  takeOver(): void {
+    const { stage } = this.app;
+    this.app.eyes = { here: () => this.camera.centre, lookAt: (low, high) => this.camera.frameBox(low, high) };
+    stage.resize(this.canvas.parentElement!.clientWidth, this.canvas.parentElement!.clientHeight);
+    this.showAll();
   }
 
   /** Buttons over the canvas. */
@@ -168,7 +178,8 @@ export class Desk {
 
   /** Where this person is and points, for the others. */
   private sayWhere(): void {
-    if (this.app.stage.renderer.xr.isPresenting || document.hidden) return;
+    // Of a device that maps the server takes poses in its own frame only.
+    if (this.app.stage.renderer.xr.isPresenting || document.hidden || this.maps) return;
     const { camera } = this.app.stage;
     const eye = vec(camera.position.clone().applyMatrix4(this.app.stage.mapFromWorld));
     const ahead = camera.getWorldDirection(new Vector3());

@@ -44,6 +44,11 @@ export class EditOverlay {
     align.current.watch((aligning) => this.drawAligning(aligning));
   }
 
+  /** In a headset the small map stands on a table instead. */
+  setMinimapShown(shown: boolean): void {
+    this.aligned.visible = shown;
+  }
+
   /** Where the next point would be; null: nowhere. */
   setHover(p: Vec3 | null): void {
     this.hover = p;

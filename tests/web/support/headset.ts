@@ -1,0 +1,58 @@
+/** Hands for the emulated headset: aims its right controller and presses its buttons. */
+import type { Page } from "playwright-core";
+import type { XRDevice } from "iwer";
+import type { App } from "../../../hmd_bridge/web/src/app";
+import type { Immersive } from "../../../hmd_bridge/web/src/xr/immersive";
+import { nextFrames } from "./page";
+
+export interface HeadsetPage {
+  concord: App;
+  concordImmersive: Immersive;
+  xrDevice: XRDevice;
+}
+
+export const standing = (page: Page): Promise<string> => page.evaluate(() => (window as unknown as HeadsetPage).concordImmersive.own.standing.value.state);
+
+/** Points the right controller at a place of the room (y up), at a button of the panel, or at the small maps. */
+export async function aimAt(page: Page, target: [number, number, number] | "table" | { button: string }): Promise<void> {
+  await page.evaluate((to) => {
+    const { concordImmersive, xrDevice } = window as unknown as HeadsetPage;
+    const point = concordImmersive.panel.mesh.position.clone();
+    if (to === "table") {
+      point.copy(concordImmersive.table.group.position);
+    } else if ("button" in to) {
+      const centre = concordImmersive.panel.centreOf(to.button);
+      if (!centre) throw new Error(`no button ${to.button} among ${JSON.stringify(concordImmersive.panel.pageShown)}`);
+      const { mesh } = concordImmersive.panel;
+      point.set(centre[0] / mesh.scale.x, centre[1] / mesh.scale.y, 0).applyMatrix4(mesh.matrixWorld);
+    } else {
+      point.set(...to);
+    }
+    const hand = xrDevice.controllers.right!;
+    hand.position.set(0.2, 1.35, -0.15);
+    const from = point.clone().set(0.2, 1.35, -0.15);
+    const object = concordImmersive.table.group.clone(false);
+    object.scale.setScalar(1);
+    object.position.copy(from);
+    object.rotation.set(0, 0, 0);
+    object.lookAt(point); // an object's +z; a controller's ray is -z
+    object.rotateY(Math.PI);
+    hand.quaternion.set(object.quaternion.x, object.quaternion.y, object.quaternion.z, object.quaternion.w);
+  }, target);
+  await nextFrames(page);
+  await nextFrames(page);
+}
+
+export async function press(page: Page, act: "select" | "squeeze", down: boolean): Promise<void> {
+  await page.evaluate(([button, value]) => (window as unknown as HeadsetPage).xrDevice.controllers.right!.updateButtonValue(button, value), [act === "select" ? "trigger" : "squeeze", down ? 1 : 0] as const);
+  await nextFrames(page);
+  await nextFrames(page);
+}
+
+/** Aims at a button of the panel and presses the trigger. */
+export async function pressButton(page: Page, id: string): Promise<void> {
+  await page.waitForFunction((button) => (window as unknown as HeadsetPage).concordImmersive.panel.centreOf(button) !== null, id);
+  await aimAt(page, { button: id });
+  await press(page, "select", true);
+  await press(page, "select", false);
+}
