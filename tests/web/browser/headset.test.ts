@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { after, before, test } from "node:test";
+import { after, afterEach, before, beforeEach, test } from "node:test";
 import type { Browser, Page } from "playwright-core";
 import { FakeServer } from "../support/fake_server";
 import { canvasShot, emulatorFile, launch, nextFrames, open, pageShot, webFolder } from "../support/page";
@@ -9,7 +9,10 @@ import { capturesFolder } from "../support/paths";
 import { aimAt, press, pressButton, standing, type HeadsetPage } from "../support/headset";
 
 let browser: Browser;
+let server: FakeServer;
 before(async () => (browser = await launch()));
+beforeEach(() => (server = new FakeServer(webFolder)));
+afterEach(() => server.stop());
 after(() => browser.close());
 
 async function headset(page: Page, room: string): Promise<void> {
@@ -17,15 +20,15 @@ async function headset(page: Page, room: string): Promise<void> {
   await page.addInitScript({ path: emulatorFile });
 }
 
-async function entered(server: FakeServer, room: string): Promise<{ page: Page; errors: string[] }> {
-  const { page, errors } = await open(browser, await server.start(), (fresh) => headset(fresh, room));
+async function entered(room: string): Promise<{ page: Page; errors: string[] }> {
+  const { page, errors } = await open(browser, await server.start(), (fresh) => headset(fresh, room), { width: 560, height: 400 }); // few pixels: all of them are drawn by software
   await page.locator("#enter").click();
   await page.waitForFunction(() => (window as unknown as HeadsetPage).concordImmersive.presenting);
   return { page, errors };
 }
 
 /** The server says that this device's map was placed there. */
-function alignOwn(server: FakeServer, frameId: string, agent: string): void {
+function alignOwn(frameId: string, agent: string): void {
   server.agents = [...server.agents, {
     agent, type: "headset", frame_id: frameId, aligned: true, T_map_agent: { position: [-2.5, 0, 0], rotation: [0, 0, 0, 1] }, weight: 100, revision: 1, known: 9, occupied: 9,
   }];
@@ -39,8 +42,7 @@ const own = (page: Page): Promise<{ agent: string; frameId: string }> =>
   });
 
 test("a person enters a captured office: its mesh is sent, the menu is there, edits wait for an alignment", async () => {
-  const server = new FakeServer(webFolder);
-  const { page, errors } = await entered(server, "office_large");
+  const { page, errors } = await entered("office_large");
   await page.waitForFunction(() => (window as unknown as HeadsetPage).concordImmersive.uploader.looks.value >= 3);
   assert(server.uploads[0]!.meshes > 0, "the first look brings the room");
   assert.deepEqual(server.uploads.slice(0, 3).map(({ sequence }) => sequence), [0, 1, 2]);
@@ -54,12 +56,10 @@ test("a person enters a captured office: its mesh is sent, the menu is there, ed
   assert(Math.abs(notice.T_own_head.position[2]! - 1.65) < 0.05, "z up");
   assert.deepEqual(errors, []);
   await page.close();
-  server.stop();
 });
 
 test("the small map is taken in the hand, put onto the other's, refined and accepted; then the map stands in the room", async () => {
-  const server = new FakeServer(webFolder);
-  const { page, errors } = await entered(server, "office_large");
+  const { page, errors } = await entered("office_small");
   await page.waitForFunction(() => (window as unknown as HeadsetPage).concordImmersive.uploader.looks.value >= 1);
   await pressButton(page, "page align");
   await pressButton(page, "with robot1");
@@ -81,7 +81,7 @@ test("the small map is taken in the hand, put onto the other's, refined and acce
   assert(Math.hypot(...guess.T_target_source.position) > 0.5, "it was moved by hand");
   await pressButton(page, "do accept");
   const { agent, frameId } = await own(page);
-  alignOwn(server, frameId, agent);
+  alignOwn(frameId, agent);
   await page.waitForFunction(() => (window as unknown as HeadsetPage).concordImmersive.own.standing.value.state === "aligned");
   await page.waitForFunction(() => (window as unknown as HeadsetPage).concord.layers.settled && (window as unknown as HeadsetPage).concord.layers.triangles > 100);
   await nextFrames(page);
@@ -126,15 +126,13 @@ test("the small map is taken in the hand, put onto the other's, refined and acce
   await canvasShot(page, "headset-9-path");
   assert.deepEqual(errors, []);
   await page.close();
-  server.stop();
 });
 
 test("a reset of the origin makes another frame, unaligned, with edits blocked and a new sequence of looks", async () => {
-  const server = new FakeServer(webFolder);
-  const { page, errors } = await entered(server, "office_small");
+  const { page, errors } = await entered("office_small");
   await page.waitForFunction(() => (window as unknown as HeadsetPage).concordImmersive.uploader.looks.value >= 1);
   const first = await own(page);
-  alignOwn(server, first.frameId, first.agent);
+  alignOwn(first.frameId, first.agent);
   await page.waitForFunction(() => (window as unknown as HeadsetPage).concordImmersive.own.standing.value.state === "aligned");
   assert.equal(await page.evaluate(() => (window as unknown as HeadsetPage).concord.editor.blocked.value), null);
   await page.evaluate(() => (window as unknown as HeadsetPage).xrDevice.recenter());
@@ -147,5 +145,4 @@ test("a reset of the origin makes another frame, unaligned, with edits blocked a
   await pageShot(page, "headset-10-reset");
   assert.deepEqual(errors, []);
   await page.close();
-  server.stop();
 });

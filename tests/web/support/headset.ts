@@ -40,12 +40,10 @@ export async function aimAt(page: Page, target: [number, number, number] | "tabl
     hand.quaternion.set(object.quaternion.x, object.quaternion.y, object.quaternion.z, object.quaternion.w);
   }, target);
   await nextFrames(page);
-  await nextFrames(page);
 }
 
 export async function press(page: Page, act: "select" | "squeeze", down: boolean): Promise<void> {
   await page.evaluate(([button, value]) => (window as unknown as HeadsetPage).xrDevice.controllers.right!.updateButtonValue(button, value), [act === "select" ? "trigger" : "squeeze", down ? 1 : 0] as const);
-  await nextFrames(page);
   await nextFrames(page);
 }
 

@@ -19,8 +19,9 @@ export function launch(): Promise<Browser> {
 }
 
 /** Opens the page; errors of its scripts fail the test when they are read. */
-export async function open(browser: Browser, url: string, prepare?: (page: Page) => Promise<void>): Promise<{ page: Page; errors: string[] }> {
-  const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
+export async function open(browser: Browser, url: string, prepare?: (page: Page) => Promise<void>, viewport = { width: 1280, height: 800 }): Promise<{ page: Page; errors: string[] }> {
+  const page = await browser.newPage({ viewport });
+  page.setDefaultTimeout(90_000);
   const errors: string[] = [];
   page.on("pageerror", (error) => errors.push(error.stack ?? error.message));
   page.on("console", (message) => message.type() === "error" && !message.text().includes("WebSocket") && errors.push(message.text()));

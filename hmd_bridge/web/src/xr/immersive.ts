@@ -1,10 +1,10 @@
 /** The immersive session: the map over the real room, in one's hands. On the same modules as the desk. */
-import { Color, Group, Vector3 } from "three";
+import { Color, Group, Matrix4, Vector3 } from "three";
 import type { App } from "../app";
 import type { Vec3 } from "../base/vec";
 import { inverse, kIdentity, poseFromXr } from "../base/vec";
 import { kBackground } from "../scene/colours";
-import { poseOf, vec } from "../scene/three_pose";
+import { vec } from "../scene/three_pose";
 import { MapAnchor, poseOfTransform } from "./map_anchor";
 import { Menu } from "./menu";
 import { MiniTable } from "./mini_table";
@@ -15,6 +15,7 @@ import { RoomView } from "./room_view";
 import { ScenePanel } from "./scene_panel";
 
 const kTrackingMs = 66;
+const kAimMs = 80;
 const kInAir = 1.5;
 const kReach = 30;
 const kDragMetres = 0.15;
@@ -37,6 +38,11 @@ export class Immersive {
   private pressedAt: Vec3 | null = null;
   private pointed: Vec3 | null = null;
   private placePanel = false;
+  /** Of the head in the world, which is the reference space; as of this frame, before three.js has it. */
+  private readonly viewer = new Matrix4();
+  private aimedAt = -Infinity;
+  /** The hand that pressed last. */
+  private leading: Pointer;
 
   constructor(
     private readonly app: App,
@@ -48,6 +54,7 @@ export class Immersive {
     this.menu = new Menu(app, own, this.room);
     this.table = new MiniTable(app.align, (table) => this.putAhead(table, 0.75, -0.35));
     this.pointers = new Pointers(stage);
+    this.leading = this.pointers.all[0]!;
     this.pointers.hide();
     this.menu.page.watch((page) => this.panel.show(page));
     this.menu.onLeave = () => void this.session?.end();
@@ -126,13 +133,14 @@ export class Immersive {
     this.own.setTracked(viewer !== undefined && !viewer.emulatedPosition && this.session.visibilityState !== "hidden");
     const now = performance.now();
     if (viewer) {
+      this.viewer.fromArray(viewer.transform.matrix);
       const T_own_map = this.anchor.update(frame, this.space, viewer.transform);
       if (T_own_map) this.app.stage.setMapPose(T_own_map);
       if (this.placePanel) this.putPanelAhead();
       if (this.own.standing.value.state !== "lost") this.room.look(frame, this.space, viewer.transform, now);
     }
     this.pointers.update();
-    for (const pointer of this.pointers.all) this.aim(pointer);
+    for (const pointer of this.pointers.all) this.aim(pointer, now);
     this.table.update();
     if (now - this.saidWhere > kTrackingMs) this.sayWhere(viewer?.transform, now);
   }
@@ -150,17 +158,19 @@ export class Immersive {
   }
 
   /** Shows what a ray meets. */
-  private aim(pointer: Pointer): void {
+  private aim(pointer: Pointer, now: number): void {
     if (!pointer.connected) return pointer.showReach(null);
     const panel = this.panel.aim(pointer.caster);
-    if (pointer.index === 0 || panel) this.panel.setHovered(panel?.button ?? null);
+    if (pointer === this.leading) this.panel.setHovered(panel?.button ?? null);
     if (panel) return pointer.showReach(panel.distance);
+    if (pointer !== this.leading) return pointer.showReach(null);
+    // Meeting a room of many triangles costs time: often enough for an eye will do.
+    if (now - this.aimedAt < kAimMs) return;
+    this.aimedAt = now;
     const target = this.target(pointer);
     pointer.showReach(target.distance);
-    if (pointer.index === 0) {
-      this.pointed = target.p;
-      this.app.editOverlay.setHover(target.p);
-    }
+    this.pointed = target.p;
+    this.app.editOverlay.setHover(target.p);
   }
 
   /** Where a pointer's point would be, in the map: at the hand, on the map, on the room, or in the air. */
@@ -177,6 +187,7 @@ export class Immersive {
   }
 
   private began(pointer: Pointer, act: PointerAct): void {
+    this.leading = pointer;
     const panel = this.panel.aim(pointer.caster);
     if (panel) {
       if (act === "select" && panel.button) this.menu.press(panel.button);
@@ -204,23 +215,20 @@ export class Immersive {
   }
 
   private head(): Vec3 {
-    const { stage } = this.app;
-    return vec(new Vector3().setFromMatrixPosition(stage.renderer.xr.getCamera().matrixWorld).applyMatrix4(stage.mapFromWorld));
+    return vec(new Vector3().setFromMatrixPosition(this.viewer).applyMatrix4(this.app.stage.mapFromWorld));
   }
 
   private putPanelAhead(): void {
     this.placePanel = false;
     this.putAhead(this.panel.mesh, 0.8, -0.05);
-    const eye = new Vector3().setFromMatrixPosition(this.app.stage.renderer.xr.getCamera().matrixWorld);
-    this.panel.mesh.lookAt(eye);
+    this.panel.mesh.lookAt(new Vector3().setFromMatrixPosition(this.viewer));
+    this.panel.mesh.updateMatrixWorld(true);
   }
 
   /** Before the person's eyes, upright. */
   private putAhead(object: Group | ScenePanel["mesh"], ahead: number, up: number): void {
-    const head = poseOf(this.app.stage.renderer.xr.getCamera().matrixWorld);
-    const eye = new Vector3(...head.position);
-    const forward = this.app.stage.renderer.xr.getCamera().getWorldDirection(new Vector3()).setY(0).normalize();
-    object.position.copy(eye).addScaledVector(forward, ahead).add(new Vector3(0, up, 0));
+    const forward = new Vector3(0, 0, -1).transformDirection(this.viewer).setY(0).normalize();
+    object.position.setFromMatrixPosition(this.viewer).addScaledVector(forward, ahead).add(new Vector3(0, up, 0));
     object.rotation.set(object instanceof Group ? -Math.PI / 2 : 0, 0, 0);
     object.updateMatrixWorld(true);
   }

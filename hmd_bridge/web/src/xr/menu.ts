@@ -93,12 +93,12 @@ export class Menu {
   private words(): string {
     const { editor, news } = this.app;
     const item = news.latest.value;
-    if (item?.kind === "failed") return item.text;
+    if (item) return item.text;
     if (editor.question.value) return editor.question.value.hint.replace("Click", "Point at");
     if (this.name !== "align" && editor.blocked.value !== null) return editor.blocked.value;
     const selection = editor.selection.value;
     if (selection && !selection.closed) return kTools.find(({ tool }) => tool === selection.tool)!.hint.replace("Click", "Point at and press on");
-    return item?.text ?? "Point with your hand or controller; pinch or press the trigger.";
+    return "Point with your hand or controller; pinch or press the trigger.";
   }
 
   private main(): Omit<PanelPage, "words"> {
