@@ -88,6 +88,7 @@ test("the small map is taken in the hand, put onto the other's, refined and acce
   await canvasShot(page, "headset-4-aligned");
 
   // A box over the floor, drawn in one go, added.
+  await pressButton(page, "page main");
   await pressButton(page, "page edit");
   await canvasShot(page, "headset-5-edit-menu");
   await pressButton(page, "tool box");
