@@ -58,7 +58,7 @@ function enterButton(app: App, immersive: Immersive): HTMLElement {
 
 async function main(): Promise<void> {
   const immersiveHere = await immersiveSupported();
-  const own = immersiveHere ? new OwnFrame(agentName(), freshId) : null;
+  let own = immersiveHere ? new OwnFrame(agentName(), freshId) : null;
 
   const canvas = document.querySelector<HTMLCanvasElement>("#canvas")!;
   const view = document.querySelector<HTMLElement>("#view")!;
@@ -87,7 +87,14 @@ async function main(): Promise<void> {
   });
   document.body.append(dialog);
   link.state.watch((state) => {
-    if (state.state === "refused") dialog.showModal();
+    if (state.state !== "refused") return;
+    if (state.code === "DENIED" && own) {
+      // Who may only look cannot be an agent, but can look.
+      own = null;
+      link.connect();
+    } else if (state.code === "BAD_TOKEN") {
+      dialog.showModal();
+    }
   });
 
   let app: App | null = null;

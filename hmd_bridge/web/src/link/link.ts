@@ -2,7 +2,7 @@
  * The connection to the bridge: requests and their answers, events, frames, credit, and coming back after it was lost.
  * Messages are taken strictly in the order in which they came, so what depends on order can rely on it.
  */
-import { VERSION, type Answers, type HelloAnswer, type HelloRequest, type Notices, type Requests } from "../../generated/messages";
+import { VERSION, type Answers, type Code, type HelloAnswer, type HelloRequest, type Notices, type Requests } from "../../generated/messages";
 import { answerTo, readText, TextError, type EventMessage, type ServerText } from "../protocol/envelope";
 import { FrameError, readFrame, type CellsFrame, type PointsFrame, type ServerFrame } from "../protocol/frames";
 import { Signal } from "../base/signal";
@@ -33,7 +33,7 @@ export type LinkState =
   | { state: "connecting" }
   | { state: "ready"; hello: HelloAnswer }
   | { state: "lost"; why: string; seconds: number }
-  | { state: "refused"; why: string };
+  | { state: "refused"; why: string; code: Code | null };
 
 /** As Link.request(). */
 export type Ask = <K extends keyof Requests>(name: K, body: Requests[K]) => Promise<Answers[K]>;
@@ -189,7 +189,7 @@ export class Link {
     this.ended = true;
     this.socket?.close(1000);
     this.abandon(why);
-    this.state.set({ state: "refused", why });
+    this.state.set({ state: "refused", why, code: error instanceof RefusedError ? error.refusal.code : null });
   }
 
   private closed(socket: Socket): void {
