@@ -2,7 +2,7 @@
 import type { App } from "../app";
 import { button, el, field, live, none, section, select } from "../base/dom";
 import { counted } from "../base/news";
-import type { ZoneKind } from "../../generated/messages";
+import type { Zone, ZoneKind } from "../../generated/messages";
 import { kTools } from "../edit/selection";
 
 export function editPanel(app: App): HTMLElement {
@@ -65,11 +65,22 @@ function zonesSection(app: App): HTMLElement {
   const { world } = app;
   const list = live((redraw) => world.zones.watch(redraw), () => {
     if (world.zones.value.length === 0) return [none("There are no zones.")];
-    return world.zones.value.map(({ name, zone_kind, author, revision }) =>
-      el("div", { class: "row between" }, el("span", {}, `${name}: ${zone_kind === "no_go" ? "keep out" : "contact allowed"}, by ${author || "somebody"}`),
-        button("Delete", () => void app.news.tell(app.ask("zone_delete", { name, base_revision: revision }), () => `Zone ${name} deleted.`), { class: "danger", "aria-label": `Delete zone ${name}` })));
+    return world.zones.value.map((zone) => zoneRow(app, zone));
   });
   return section("Zones", el("p", { class: "quiet" }, "Zones tell the planner where robots should not go. They are no safety function."), list);
+}
+
+function zoneRow(app: App, { name, zone_kind, author, revision, volume, T_map_zone }: Zone): HTMLElement {
+  const other: ZoneKind = zone_kind === "no_go" ? "allow_contact" : "no_go";
+  const words: Record<ZoneKind, string> = { no_go: "keep out", allow_contact: "contact allowed" };
+  // A zone's volume is in its own frame; only one that is not turned against the map can be said again in the map's.
+  const still = T_map_zone.position.every((c) => c === 0) && T_map_zone.rotation[3] === 1;
+  const change = (): Promise<unknown> =>
+    app.news.tell(app.ask("zone_change", { name, zone_kind: other, frame: "map", volume, base_revision: revision }), () => `Zone ${name}: ${words[other]}.`);
+  return el("div", { class: "row between" }, el("span", {}, `${name}: ${words[zone_kind]}, by ${author || "somebody"}`),
+    el("span", { class: "row" },
+      button("Switch", () => void change(), { title: `Make it: ${words[other]}`, disabled: !still, "aria-label": `Make zone ${name}: ${words[other]}` }),
+      button("Delete", () => void app.news.tell(app.ask("zone_delete", { name, base_revision: revision }), () => `Zone ${name} deleted.`), { class: "danger", "aria-label": `Delete zone ${name}` })));
 }
 
 function sceneSection(app: App): HTMLElement {

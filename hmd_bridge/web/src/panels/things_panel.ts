@@ -1,13 +1,13 @@
 /** Labelled things, assets that can be put into the map, and what detectors propose. */
 import type { App } from "../app";
-import type { Asset, Instance } from "../../generated/messages";
+import type { Asset, Instance, Label } from "../../generated/messages";
 import { button, el, live, none, section } from "../base/dom";
 import { counted } from "../base/news";
 import { Signal } from "../base/signal";
 import { fromYaw, type Vec3 } from "../base/vec";
 
 export function thingsPanel(app: App): HTMLElement {
-  return el("div", {}, detectionsSection(app), instancesSection(app), assetsSection(app));
+  return el("div", {}, detectionsSection(app), instancesSection(app), classesSection(app), assetsSection(app));
 }
 
 function detectionsSection(app: App): HTMLElement {
@@ -44,6 +44,27 @@ function thingCard(app: App, thing: Instance): HTMLElement {
     el("header", {}, el("strong", {}, `${class_name} ${instance}`), el("span", { class: asset === undefined ? "badge label" : "badge asset" }, asset === undefined ? "label" : "asset")),
     el("p", { class: "quiet" }, counted(voxels, "voxel")),
     el("div", { class: "row" }, button("Look", () => app.eyes.lookAt(min, max)), ...acts));
+}
+
+/** Classes of things, each of which can be taken away as a whole. */
+function classesSection(app: App): HTMLElement {
+  const labels = new Signal<Label[] | null>(null);
+  const refresh = async (): Promise<void> => {
+    const answer = await app.news.tell(app.ask("labels", {}), () => null);
+    if (answer) labels.set(answer.labels);
+  };
+  const remove = async ({ label, name }: Label): Promise<void> => {
+    const asked = app.ask("label_delete", { label, keep_voxels: true });
+    if (await app.news.tell(asked, ({ voxels }) => `${name} is no label any more; ${counted(voxels, "voxel")} stay as they are.`)) await refresh();
+  };
+  const list = live((redraw) => labels.watch(redraw), () => {
+    if (!labels.value) return [];
+    if (labels.value.length === 0) return [none("There are no labels.")];
+    return labels.value.map((label) =>
+      el("div", { class: "row between" }, `${label.name}: ${counted(label.instances, "thing")}`,
+        button("Drop", () => void remove(label), { class: "danger", disabled: !app.mayEdit, "aria-label": `Drop the label ${label.name}` })));
+  });
+  return section("Labels", button("List labels", () => void refresh()), list);
 }
 
 async function moveAsset(app: App, { label, instance, class_name }: Instance): Promise<void> {

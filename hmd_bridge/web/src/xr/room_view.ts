@@ -50,7 +50,7 @@ export class RoomView {
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new BufferAttribute(vertices, 3));
     geometry.setIndex(new BufferAttribute(triangles, 1));
-    const mesh = new Mesh(geometry, new MeshBasicMaterial({ color: kRoom, wireframe: true, transparent: true, opacity: 0.35, depthWrite: false }));
+    const mesh = new Mesh(geometry, new MeshBasicMaterial({ color: kRoom, wireframe: true, transparent: true, opacity: 0.25, depthWrite: false }));
     this.meshes.set(number, mesh);
     this.group.add(mesh);
   }

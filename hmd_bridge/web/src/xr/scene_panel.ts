@@ -2,7 +2,7 @@
 import { CanvasTexture, LinearFilter, Mesh, MeshBasicMaterial, PlaneGeometry, SRGBColorSpace, type Raycaster } from "three";
 import { buttonAt, kPanelWidth, panelHeight, placed, type PanelPage, type PlacedButton } from "./panel_layout";
 
-const kMetresWide = 0.52;
+const kMetresWide = 0.6;
 
 export class ScenePanel {
   readonly mesh: Mesh<PlaneGeometry, MeshBasicMaterial>;
