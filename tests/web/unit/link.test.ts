@@ -9,6 +9,7 @@ interface Said { id?: number; request?: string; notice?: string; body: Record<st
 
 class FakeSocket implements Socket {
   binaryType = "";
+  readyState = 1;
   onopen: (() => void) | null = null;
   onclose: (() => void) | null = null;
   onmessage: ((event: { data: string | ArrayBuffer }) => void) | null = null;

@@ -12,6 +12,7 @@ import { RefusedError } from "./failures";
 /** What this needs of a WebSocket. */
 export interface Socket {
   binaryType: string;
+  readonly readyState: number;
   onopen: (() => void) | null;
   onclose: (() => void) | null;
   onmessage: ((event: { data: string | ArrayBuffer }) => void) | null;
@@ -47,6 +48,7 @@ interface Pending {
   reject: (error: Error) => void;
 }
 
+const kOpen = 1;
 const kCreditAhead = 4_000_000;
 const kCheckMs = 10_000;
 const kSilentMs = 25_000;
@@ -112,7 +114,8 @@ export class Link {
 
   /** Not answered, and not kept for later while there is no connection. */
   notice<K extends keyof Notices>(name: K, body: Notices[K]): void {
-    if (this.state.value.state === "ready") this.socket?.send(JSON.stringify({ notice: name, body }));
+    const { socket } = this;
+    if (this.state.value.state === "ready" && socket?.readyState === kOpen) socket.send(JSON.stringify({ notice: name, body }));
   }
 
   private ask(id: number, name: keyof Answers, data: Pending["data"]): ReturnType<typeof this.wait> {

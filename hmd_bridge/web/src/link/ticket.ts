@@ -7,8 +7,11 @@ const kTokenKey = "concord-token";
 export const storedToken = (): string => localStorage.getItem(kTokenKey) ?? "";
 export const storeToken = (token: string): void => localStorage.setItem(kTokenKey, token);
 
+/** Rejects where nobody answers. */
 export async function ticketNeeded(): Promise<boolean> {
-  const response = await fetch("/api/info", { cache: "no-store" });
+  const response = await fetch("/api/info", { cache: "no-store" }).catch(() => {
+    throw new Error("The server does not answer.");
+  });
   const info = (await response.json()) as { ticket_needed?: unknown };
   return info.ticket_needed === true;
 }
