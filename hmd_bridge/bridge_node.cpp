@@ -32,7 +32,9 @@ Hub::Config hub_config(const Site& site) {
   Hub::Config config;
   config.resolution = site.resolution;
   config.max_clients = static_cast<std::size_t>(site.bridge.max_clients);
-  config.local_role = site.bridge.local_role == "view" ? Role::kView : site.bridge.local_role == "robot" ? Role::kRobot : Role::kEdit;
+  config.local_role = site.bridge.local_role == "view"    ? Role::kView
+                      : site.bridge.local_role == "robot" ? Role::kRobot
+                                                          : Role::kEdit;
   return config;
 }
 
@@ -104,12 +106,13 @@ void BridgeNode::hear_parts() {
   gather(desk_, "out/history", desk_.history);
   gather(desk_, "out/conflict_list", desk_.conflicts);
   gather(desk_, "out/downsampled", desk_.points);
-  listen<MapList>(context_.bus, context_.counters, context_.process, "out/map_list", [this](const std::string&, MapList list) {
-    if (!desk_.watched.contains(list.id)) return;
-    const std::string id = list.id;
-    desk_.maps.insert_or_assign(id, std::move(list));
-    asker_.arrived(id);
-  });
+  listen<MapList>(context_.bus, context_.counters, context_.process, "out/map_list",
+                  [this](const std::string&, MapList list) {
+                    if (!desk_.watched.contains(list.id)) return;
+                    const std::string id = list.id;
+                    desk_.maps.insert_or_assign(id, std::move(list));
+                    asker_.arrived(id);
+                  });
 }
 
 }  // namespace concord::hmd

@@ -65,8 +65,11 @@ std::optional<PlanResult> check_cell(const Grid& grid, const ZoneLayer& zones, c
   const std::string where = describe(end.what, end.position);
   if (p_cells.cwiseAbs().maxCoeff() >= kMaxVoxel) return refusal(end.outside, where + " lies outside the map");
   const Cell cell = cell_of(p_cells);
-  if (const std::string* zone = zones.no_go_at(cell)) return refusal(end.no_go, where + " lies in " + no_go(*zone));
   const LogOdds state = grid.at(cell);
+  if (const std::string* zone = zones.no_go_at(cell)) {
+    const char* too = is_free(state) ? "" : is_known(state) ? ", and is occupied" : ", and has not been observed free";
+    return refusal(end.no_go, where + " lies in " + no_go(*zone) + too);
+  }
   if (is_free(state)) return std::nullopt;
   if (is_known(state)) return refusal(end.occupied, where + " is occupied");
   if (is_inside(grid, cell)) return refusal(end.unknown, where + " has not been observed free");
@@ -95,10 +98,14 @@ PlanResult too_near(const Task& task, const End& end) {
   // Where contact is allowed its body is clear, but its centre touches what it may not enter.
   if (gap >= task.radius) gap = least_clearance(task, {&end.position, 1}, Against::kImpassable);
   const double r = task.grid.resolution();
-  const auto zone = task.zones.nearest_no_go(end.position / r, gap / r + kTouch);
+  const Eigen::Vector2d p = end.position / r;
+  const auto zone = task.zones.nearest_no_go(p, gap / r + kTouch);
+  FreeSpace without(task.grid, task.in_cells(), task.zones, FreeSpace::NoGo::kIgnored);
+  const bool is_zone_alone = zone && without.sees(p, p);
   return refusal(end.clearance, describe(end.what, end.position) + " is " + metres(gap) + " from " +
                                     (zone ? no_go(zone->name) : "the nearest wall or unobserved cell") +
-                                    ", the robot needs " + metres(task.radius));
+                                    ", the robot needs " + metres(task.radius) +
+                                    (zone && !is_zone_alone ? "; a wall or unobserved cell is too near as well" : ""));
 }
 
 /// Scales back to metres, keeps both ends exact, and lets the validator have the last word.
@@ -119,25 +126,38 @@ PlanResult finish(const Task& task, Points points, const End& start, const End& 
   return result;
 }
 
-/// Looks for a way as if there were no no-go zones, with about the effort that it took to find none, and says which
-/// zone that one meets first.
-std::string cut_off(const Task& task, FreeSpace& space, const std::array<Eigen::Vector2d, 2>& p,
-                    std::int64_t& expanded) {
+/// "'a', 'b' and 2 more", of those that the way would lead through, in its order.
+std::string zones_on(const Task& task, FreeSpace& space, const std::vector<Cell>& way) {
+  constexpr std::size_t kNamed = 3;
+  std::vector<std::string> names;
+  for (const Cell cell : way) {
+    if (space.is_open(cell)) continue;
+    const auto zone = task.zones.nearest_no_go(centre_of(cell), task.in_cells() + kTouch);
+    if (zone && std::find(names.begin(), names.end(), zone->name) == names.end()) names.push_back(zone->name);
+  }
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), kNamed); ++i) text += (i == 0 ? "'" : ", '") + names[i] + "'";
+  return names.size() > kNamed ? text + " and " + std::to_string(names.size() - kNamed) + " more" : text;
+}
+
+/// What closes the way, as far as looking for one as if there were no no-go zones tells, with about the effort that it
+/// took to find none. Zones are only named if there is a way without them: a wall may close it as well. Notes that way.
+std::string what_closes(const Task& task, FreeSpace& space, const std::array<Eigen::Vector2d, 2>& p,
+                        PlanResult& result) {
+  const std::string walls = "walls, or space not yet observed, cut the goal off";
+  if (!space.met_no_go()) return walls;
   FreeSpace without(task.grid, task.in_cells(), task.zones, FreeSpace::NoGo::kIgnored);
   const std::vector<Anchor> starts = anchors(without, p[0]);
   const std::vector<Anchor> goals = anchors(without, p[1]);
-  if (starts.empty() || goals.empty()) return {};
-  const CellPath path = find_path(without, starts, goals, expanded + kLook);
-  expanded += path.expanded;
-  if (path.status != CellPath::Status::kFound) return {};
-  std::string which = "a no-go zone";
-  for (const Cell cell : path.cells) {
-    if (space.is_open(cell)) continue;
-    if (const auto zone = task.zones.nearest_no_go(centre_of(cell), task.in_cells() + kTouch))
-      which = no_go(zone->name);
-    break;
-  }
-  return which + " cuts the goal off: without no-go zones there is a way";
+  if (starts.empty() || goals.empty()) return walls;
+  const CellPath way = find_path(without, starts, goals, result.expanded + kLook);
+  result.expanded += way.expanded;
+  if (way.status == CellPath::Status::kGaveUp) return "no-go zones, walls or space not yet observed cut the goal off";
+  if (way.status != CellPath::Status::kFound) return walls;
+  result.but_for_zones = Region(without.reach() + 1);
+  for (const Cell cell : way.cells) result.but_for_zones.add(cell);
+  const std::string names = zones_on(task, space, way.cells);
+  return "no-go zones cut the goal off; without them there is a way" + (names.empty() ? "" : ", through " + names);
 }
 
 /// A straight line counts as tried, too; it may be free where no cell's centre is near.
@@ -147,16 +167,11 @@ void add_line(Region& region, const Eigen::Vector2d& from, const Eigen::Vector2d
 }
 
 PlanResult no_path(const Task& task, FreeSpace& space, const std::array<Eigen::Vector2d, 2>& p, CellPath found) {
-  PlanResult result;
-  if (found.status == CellPath::Status::kGaveUp) {
-    result =
-        refusal(Reason::kSearchLimit, "no path within " + std::to_string(kMaxExpanded) + " cells: the map is too big");
-  } else {
-    result = refusal(Reason::kNoValidPath, "no way through: walls, or space not yet observed, cut the goal off");
-    const std::string why = space.met_no_go() ? cut_off(task, space, p, found.expanded) : "";
-    if (!why.empty()) result.message = "no way through: " + why;
-  }
+  const bool gave_up = found.status == CellPath::Status::kGaveUp;
+  PlanResult result = refusal(gave_up ? Reason::kSearchLimit : Reason::kNoValidPath, "");
   result.expanded = found.expanded;
+  result.message = gave_up ? "no path within " + std::to_string(kMaxExpanded) + " cells: the map is too big"
+                           : "no way through: " + what_closes(task, space, p, result);
   result.reached = std::move(found.reached);
   add_line(result.reached, p[0], p[1]);
   return result;

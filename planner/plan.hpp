@@ -52,6 +52,7 @@ struct PlanResult {
   double least_clearance = 0.0;         ///< least distance to a cell that is not free, or no-go, metres
   std::int64_t expanded = 0;            ///< cells the search looked at
   Region reached;                       ///< of a search that failed: it fails again until something there becomes free
+  Region but_for_zones;  ///< where there is a way if not for no-go zones: true until something there closes
 };
 
 /// A path for a round robot of `radius` metres over free cells, at any angle: the cheapest one over the grid's eight

@@ -36,7 +36,10 @@ Path to_path(const PathRequest& request, const PlanResult& result, double floor,
   return path;
 }
 
-bool same_answer(const Path& a, const Path& b) { return a.status == b.status && a.points == b.points; }
+/// Of a path that there is, the words follow from its points.
+bool same_answer(const Path& a, const Path& b) {
+  return a.status == b.status && a.points == b.points && (!a.points.empty() || a.message == b.message);
+}
 
 }  // namespace
 
@@ -78,7 +81,8 @@ bool Planner::must_replan(const Active& active, const ZoneLayer::Change& change)
   if (active.points.empty()) {
     return !is_failed_search(active.path) || change.anywhere ||
            std::any_of(columns.begin(), columns.end(), [&](const ColumnChange& column) {
-             return column.freed != 0 && active.reached.is_near(column.column);
+             return (column.freed != 0 && active.reached.is_near(column.column)) ||
+                    (column.blocked != 0 && active.but_for_zones.is_near(column.column));
            });
   }
   Eigen::Vector2d low = active.points.front();
@@ -143,6 +147,7 @@ std::int64_t Planner::try_to_plan(Active& active, const Moment& moment) const {
   active.path = to_path(request, result, grid_.band().floor, moment);
   active.points = std::move(result.points);
   active.reached = std::move(result.reached);
+  active.but_for_zones = std::move(result.but_for_zones);
   active.turn = 0;
   return kEffortOfAPlan + result.expanded;
 }

@@ -77,6 +77,7 @@ class Planner {
     std::vector<Eigen::Vector2d> points;
     std::optional<Eigen::Vector2d> start;  ///< where it was planned from
     Region reached;                        ///< by the search, if it failed
+    Region but_for_zones;                  ///< where its reason, that zones close the way, holds
     std::int64_t said = 0;                 ///< when it was last published
     std::int64_t turn = 0;                 ///< in which it is to be planned anew; 0: it is not
   };

@@ -18,31 +18,6 @@ Heights heights_of(const Band& band, double resolution) {
   return {std::min(band.floor, band.first * resolution), std::max(band.ceiling, band.last * resolution)};
 }
 
-/// Points of the zone's frame whose hull holds the volume.
-struct Hull {
-  std::vector<Eigen::Vector3d> operator()(const Box& box) const {
-    std::vector<Eigen::Vector3d> corners;
-    for (int i = 0; i < 8; ++i) {
-      const auto end = [&](int axis) { return (i >> axis & 1) != 0 ? box.max[axis] : box.min[axis]; };
-      corners.emplace_back(end(0), end(1), end(2));
-    }
-    return corners;
-  }
-  std::vector<Eigen::Vector3d> operator()(const OrientedBox& box) const {
-    std::vector<Eigen::Vector3d> corners = (*this)(Box{-0.5 * box.size, 0.5 * box.size});
-    for (Eigen::Vector3d& corner : corners) corner = box.T_frame_box * corner;
-    return corners;
-  }
-  std::vector<Eigen::Vector3d> operator()(const Prism& prism) const {
-    std::vector<Eigen::Vector3d> corners;
-    for (const Eigen::Vector2d& p : prism.points) {
-      corners.emplace_back(p.x(), p.y(), prism.low);
-      corners.emplace_back(p.x(), p.y(), prism.high);
-    }
-    return corners;
-  }
-};
-
 /// Neighbours along y within a column are in one plane; a column comes up to eight times.
 std::vector<ColumnPlane> slices_of(const std::vector<VoxelIndex>& cells) {
   std::vector<ColumnPlane> slices;
@@ -120,7 +95,7 @@ Result<std::int64_t> count(const Zone& zone, double resolution, const Band& band
 
 CellRectangle rectangle_around(const Zone& zone, double resolution, const Band& band) {
   Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3d& corner : std::visit(Hull{}, zone.volume)) {
+  for (const Eigen::Vector3d& corner : corners(zone.volume)) {
     const Eigen::Vector3d p_map = zone.T_map_zone * corner;
     if (!p_map.allFinite()) return kEverything;
     box.extend(p_map);

@@ -37,7 +37,8 @@ bool is_address(const std::string& name) {
 
 bool is_host(const std::string& name) {
   return !name.empty() && name.size() <= 253 && name[0] != '-' && name[0] != '.' &&
-         std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '.'; });
+         std::all_of(name.begin(), name.end(),
+                     [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '.'; });
 }
 
 bool add_extension(X509* certificate, int kind, const std::string& value) {
@@ -75,7 +76,8 @@ bool set_serial(X509* certificate) {
 
 bool fill(X509* certificate, EVP_PKEY* key, const std::string& subject, const std::string& names, std::int64_t now) {
   X509_set_version(certificate, 2);
-  const std::time_t from = static_cast<std::time_t>(now - kDaySeconds), until = static_cast<std::time_t>(now - kDaySeconds + kDays * kDaySeconds);
+  const std::time_t from = static_cast<std::time_t>(now - kDaySeconds),
+                    until = static_cast<std::time_t>(now - kDaySeconds + kDays * kDaySeconds);
   X509_NAME* name = X509_get_subject_name(certificate);
   const auto* text = reinterpret_cast<const unsigned char*>(subject.c_str());
   return set_serial(certificate) && ASN1_TIME_set(X509_getm_notBefore(certificate), from) != nullptr &&
@@ -93,7 +95,8 @@ bool fill(X509* certificate, EVP_PKEY* key, const std::string& subject, const st
 Result<Certificate> make_certificate(const std::vector<std::string>& names, std::int64_t now) {
   std::string alternatives;
   for (const std::string& name : names) {
-    if (!is_address(name) && !is_host(name)) return refuse(Code::kBadName, "'" + name + "' is neither a host name nor an address");
+    if (!is_address(name) && !is_host(name))
+      return refuse(Code::kBadName, "'" + name + "' is neither a host name nor an address");
     alternatives += (alternatives.empty() ? "" : ",") + std::string(is_address(name) ? "IP:" : "DNS:") + name;
   }
   if (names.empty()) return refuse(Code::kBadName, "name the server: its host name, or its address");

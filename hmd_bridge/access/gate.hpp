@@ -25,12 +25,13 @@ struct Identity {
 /// Whether an address (as text, without port) is this machine's own.
 [[nodiscard]] bool is_loopback(const std::string& address);
 
-/// Whether a Host header names this machine itself. A page from elsewhere whose name was made to resolve to this machine
-/// (DNS rebinding) comes from loopback too, but its browser says its own name here.
+/// Whether a Host header names this machine itself. A page from elsewhere whose name was made to resolve to this
+/// machine (DNS rebinding) comes from loopback too, but its browser says its own name here.
 [[nodiscard]] bool is_local_host(const std::string& host);
 
 /// What a browser says of where a page came from: allowed are none (no browser), the server itself as `scheme` and the
-/// Host header name it, and those that the site file lists, each as "https://name" or "https://name:port". Without case.
+/// Host header name it, and those that the site file lists, each as "https://name" or "https://name:port". Without
+/// case.
 [[nodiscard]] bool origin_allowed(const std::string& origin, const std::string& scheme, const std::string& host,
                                   const std::vector<std::string>& also);
 

@@ -14,13 +14,15 @@ namespace concord::hmd {
 namespace {
 
 constexpr const char* kMigrations[] = {
-    "CREATE TABLE tokens (name TEXT PRIMARY KEY, hash TEXT NOT NULL UNIQUE, role INTEGER NOT NULL, created INTEGER NOT NULL)"};
+    "CREATE TABLE tokens (name TEXT PRIMARY KEY, hash TEXT NOT NULL UNIQUE, role INTEGER NOT NULL, created INTEGER NOT "
+    "NULL)"};
 constexpr std::size_t kMaxToken = 200;
 
 std::string sha256(const std::string& text) {
   std::array<unsigned char, 32> hash;
   unsigned size = 0;
-  if (EVP_Digest(text.data(), text.size(), hash.data(), &size, EVP_sha256(), nullptr) != 1) throw std::runtime_error("no SHA-256");
+  if (EVP_Digest(text.data(), text.size(), hash.data(), &size, EVP_sha256(), nullptr) != 1)
+    throw std::runtime_error("no SHA-256");
   static constexpr char kHex[] = "0123456789abcdef";
   std::string out;
   for (const unsigned char byte : hash) {
@@ -47,7 +49,8 @@ auto with(const std::filesystem::path& file, Use use) -> decltype(use(std::declv
 
 std::string random_secret() {
   std::array<unsigned char, 32> bytes;
-  if (RAND_bytes(bytes.data(), static_cast<int>(bytes.size())) != 1) throw std::runtime_error("the system gives no random bytes");
+  if (RAND_bytes(bytes.data(), static_cast<int>(bytes.size())) != 1)
+    throw std::runtime_error("the system gives no random bytes");
   static constexpr char kLetters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
   std::string text;
   unsigned bits = 0, held = 0;
@@ -64,8 +67,10 @@ Result<std::string> TokenStore::add(const std::string& name, Role role, std::int
     Statement count = database.prepare("SELECT COUNT(*), SUM(name = ?) FROM tokens");
     const auto row = count.bind(name).step();
     if (!row) return tl::unexpected(row.error());
-    if (count.integer(0) >= static_cast<std::int64_t>(kMost)) return concord::refuse(concord::Code::kTooLarge, "there are 1000 tokens; remove some");
-    if (count.integer(1) > 0) return concord::refuse(concord::Code::kExists, "there is a token " + name + "; remove it first");
+    if (count.integer(0) >= static_cast<std::int64_t>(kMost))
+      return concord::refuse(concord::Code::kTooLarge, "there are 1000 tokens; remove some");
+    if (count.integer(1) > 0)
+      return concord::refuse(concord::Code::kExists, "there is a token " + name + "; remove it first");
     count.reset();
     std::string token = "concord_" + random_secret();
     Statement insert = database.prepare("INSERT INTO tokens VALUES (?, ?, ?, ?)");

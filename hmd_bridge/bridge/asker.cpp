@@ -14,7 +14,8 @@ bool is_busy(const Answer& answer) { return !answer.ok && answer.code == name(co
 
 Asker::Asker(const NodeContext& context)
     : bus_(context.bus), process_(context.process), prefix_("hmd-" + std::to_string(context.boot_id) + "-") {
-  listen<Answer>(bus_, context.counters, process_, kAnswers, [this](const std::string&, const Answer& answer) { on_answer(answer); });
+  listen<Answer>(bus_, context.counters, process_, kAnswers,
+                 [this](const std::string&, const Answer& answer) { on_answer(answer); });
   bus_.every(kTick, [this] { tick(); });
 }
 
@@ -40,7 +41,8 @@ const Answer* Asker::verdict(const Waiting& waiting) {
     return it != waiting.answers.end() && it->second.ok;
   };
   if (!std::all_of(question.processes.begin(), question.processes.end(), said)) return nullptr;
-  const auto good = std::find_if(waiting.answers.begin(), waiting.answers.end(), [](const auto& entry) { return entry.second.ok; });
+  const auto good =
+      std::find_if(waiting.answers.begin(), waiting.answers.end(), [](const auto& entry) { return entry.second.ok; });
   if (good == waiting.answers.end() || (question.whole && !question.whole())) return nullptr;
   return &good->second;
 }
@@ -76,7 +78,8 @@ void Asker::tick() {
     }
   }
   for (const std::string& id : over) {
-    Answer last{id, process_, false, "TIMEOUT", "the process that does this did not answer; is the whole stack running?", 0, 0};
+    Answer last{
+        id, process_, false, "TIMEOUT", "the process that does this did not answer; is the whole stack running?", 0, 0};
     for (const auto& [process, answer] : waiting_.at(id).answers) {
       if (is_busy(answer)) last = answer;
     }

@@ -17,7 +17,7 @@ namespace concord::hmd {
 /// lost and processes are busy: what has no answer is said again with the same id, which the stack does once.
 class Asker {
  public:
-  static constexpr std::int64_t kAgain = 300'000;        ///< microseconds
+  static constexpr std::int64_t kAgain = 300'000;  ///< microseconds
   static constexpr std::int64_t kPatience = 10'000'000;
   static constexpr std::int64_t kLoadPatience = 120'000'000;
 

@@ -9,7 +9,9 @@ Box box_to_hmd(const concord::Box& box) { return {array_of(box.min), array_of(bo
 
 struct VolumeToHmd {
   Volume operator()(const concord::Box& box) const { return box_to_hmd(box); }
-  Volume operator()(const concord::OrientedBox& box) const { return OrientedBox{to_hmd(box.T_frame_box), array_of(box.size)}; }
+  Volume operator()(const concord::OrientedBox& box) const {
+    return OrientedBox{to_hmd(box.T_frame_box), array_of(box.size)};
+  }
   Volume operator()(const concord::Prism& prism) const {
     Prism out{{}, prism.low, prism.high};
     for (const Eigen::Vector2d& p : prism.points) out.points.push_back({p.x(), p.y()});
@@ -31,9 +33,15 @@ struct FromHmd {
     for (const auto& b : voxels.boxes) out.boxes.push_back({{b[0], b[1], b[2]}, {b[3], b[4], b[5]}});
     return out;
   }
-  Result<concord::Shape> operator()(const Line& line) const { return concord::Line{points_of(line.points), line.thickness}; }
-  Result<concord::Shape> operator()(const Area& area) const { return concord::Area{points_of(area.points), area.thickness}; }
-  Result<concord::Shape> operator()(const Box& box) const { return concord::Box{vector_of(box.min), vector_of(box.max)}; }
+  Result<concord::Shape> operator()(const Line& line) const {
+    return concord::Line{points_of(line.points), line.thickness};
+  }
+  Result<concord::Shape> operator()(const Area& area) const {
+    return concord::Area{points_of(area.points), area.thickness};
+  }
+  Result<concord::Shape> operator()(const Box& box) const {
+    return concord::Box{vector_of(box.min), vector_of(box.max)};
+  }
   Result<concord::Shape> operator()(const OrientedBox& box) const {
     const auto T = from_hmd(box.T_frame_box);
     if (!T) return tl::unexpected(T.error());
@@ -56,12 +64,9 @@ Pose to_hmd(const Transform& T) {
 Volume to_hmd(const concord::Volume& volume) { return std::visit(VolumeToHmd{}, volume); }
 
 Zone to_hmd(const concord::Zone& zone) {
-  return {zone.name,
-          zone.kind == concord::Zone::Kind::kNoGo ? ZoneKind::kNoGo : ZoneKind::kAllowContact,
-          to_hmd(zone.volume),
-          to_hmd(zone.T_map_zone),
-          zone.author,
-          zone.revision};
+  return {zone.name,           zone.kind == concord::Zone::Kind::kNoGo ? ZoneKind::kNoGo : ZoneKind::kAllowContact,
+          to_hmd(zone.volume), to_hmd(zone.T_map_zone),
+          zone.author,         zone.revision};
 }
 
 Lease to_hmd(const concord::Lease& lease) {
@@ -84,7 +89,9 @@ ConflictRegion to_hmd(const concord::ConflictRegion& r) {
   return region;
 }
 
-Result<Transform> from_hmd(const Pose& pose) { return make_transform(vector_of(pose.position), vector_of(pose.rotation)); }
+Result<Transform> from_hmd(const Pose& pose) {
+  return make_transform(vector_of(pose.position), vector_of(pose.rotation));
+}
 
 Result<concord::Shape> from_hmd(const Shape& shape) {
   auto out = std::visit(FromHmd{}, shape);
@@ -101,7 +108,8 @@ Result<concord::Volume> from_hmd(const Volume& volume) {
   if (auto* box = std::get_if<concord::OrientedBox>(&*shape)) out = *box;
   if (auto* prism = std::get_if<concord::Prism>(&*shape)) out = std::move(*prism);
   if (const auto fine = check(out); !fine) return tl::unexpected(fine.error());
-  if (const auto* prism = std::get_if<concord::Prism>(&out); prism != nullptr && prism->points.size() > kMaxVolumePoints) {
+  if (const auto* prism = std::get_if<concord::Prism>(&out);
+      prism != nullptr && prism->points.size() > kMaxVolumePoints) {
     return concord::refuse(concord::Code::kTooLarge, "a region has at most 64 corners");
   }
   return out;
@@ -116,9 +124,11 @@ static_assert(static_cast<int>(OperationKind::kWeight) == static_cast<int>(conco
 concord::Operation::Kind from_hmd(OperationKind kind) { return static_cast<concord::Operation::Kind>(kind); }
 
 Code code_of(const std::string& name) {
-  static const std::pair<const char*, Code> kOthers[] = {
-      {"MALFORMED", Code::kBadRequest}, {"NOT_FINITE", Code::kBadRequest},   {"BAD_TRANSFORM", Code::kBadRequest},
-      {"NOT_ALIGNED", Code::kUnaligned}, {"VALIDATION_FAILED", Code::kUnreachable}};
+  static const std::pair<const char*, Code> kOthers[] = {{"MALFORMED", Code::kBadRequest},
+                                                         {"NOT_FINITE", Code::kBadRequest},
+                                                         {"BAD_TRANSFORM", Code::kBadRequest},
+                                                         {"NOT_ALIGNED", Code::kUnaligned},
+                                                         {"VALIDATION_FAILED", Code::kUnreachable}};
   for (const auto& [theirs, ours] : kOthers) {
     if (name == theirs) return ours;
   }

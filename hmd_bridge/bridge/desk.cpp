@@ -6,7 +6,7 @@
 namespace concord::hmd {
 namespace {
 
-constexpr double kPathStep = 0.25;      // metres
+constexpr double kPathStep = 0.25;  // metres
 constexpr std::size_t kMaxPoints = 4096;
 constexpr double kClearanceShown = 2.0;  // metres; what is further is as good
 
@@ -38,8 +38,10 @@ Granted<Desk::InMap> Desk::place(const Ask& ask, Frame frame) { return place(*hu
 
 Granted<Desk::InMap> Desk::place(const Session& session, Frame frame) {
   if (frame == Frame::kMap) return InMap{};
-  if (session.agent.empty()) return no(Code::kBadFrame, "this client is no agent and has no frame of its own; say agent in hello");
-  if (session.tracking_lost) return no(Code::kTrackingLost, "the device does not know where it is; look around until it does");
+  if (session.agent.empty())
+    return no(Code::kBadFrame, "this client is no agent and has no frame of its own; say agent in hello");
+  if (session.tracking_lost)
+    return no(Code::kTrackingLost, "the device does not know where it is; look around until it does");
   const AgentState* state = world.agent(session.agent);
   if (state == nullptr || !state->aligned || state->frame_id != session.frame_id) {
     return no(Code::kUnaligned, "where this device's frame lies in the map is not known; align it");
@@ -55,13 +57,24 @@ Granted<Transform> Desk::in_map(const Ask& ask, Frame frame, const Pose& pose) {
   return where->T_map_frame * *T;
 }
 
-Granted<Path> Desk::show(const Ask& ask, const concord::Path& path, Frame frame) { return show(*hub.find(ask.session), path, frame); }
+Granted<Path> Desk::show(const Ask& ask, const concord::Path& path, Frame frame) {
+  return show(*hub.find(ask.session), path, frame);
+}
 
 Granted<Path> Desk::show(const Session& session, const concord::Path& path, Frame frame) {
   const auto where = place(session, frame);
   if (!where) return tl::unexpected(where.error());
-  Path out{path.robot,         path.status.substr(0, 40), path.message.substr(0, 400), frame, {},         path.length,
-           path.least_clearance, path.id.substr(0, 80),     path.plan_number,            path.map_revision, path.active};
+  Path out{path.robot,
+           path.status.substr(0, 40),
+           path.message.substr(0, 400),
+           frame,
+           {},
+           path.length,
+           path.least_clearance,
+           path.id.substr(0, 80),
+           path.plan_number,
+           path.map_revision,
+           path.active};
   const Transform T_frame_map = where->T_map_frame.inverse();
   const double step = std::max(kPathStep, path.length / (kMaxPoints / 2.0));
   const auto put = [&](const Eigen::Vector3d& p_map) {

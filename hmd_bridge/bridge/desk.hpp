@@ -20,7 +20,9 @@ struct No {
 };
 template <class T>
 using Granted = tl::expected<T, No>;
-[[nodiscard]] inline tl::unexpected<No> no(Code code, std::string message) { return tl::unexpected<No>(No{code, std::move(message)}); }
+[[nodiscard]] inline tl::unexpected<No> no(Code code, std::string message) {
+  return tl::unexpected<No>(No{code, std::move(message)});
+}
 [[nodiscard]] inline tl::unexpected<No> no(const Error& error) { return no(code_of(error), error.message); }
 
 /// What every request is worked on with, and what more than one kind of request needs.
@@ -60,17 +62,9 @@ class Desk {
     });
   }
 
-  /// Leases are renewed under one id, which is also that of each request.
+  /// A lease is this session's own, under the name that it has there.
   [[nodiscard]] std::string lease_id(const Ask& ask, const std::string& name) const {
     return asker.id_of(ask.session, 0) + "-" + name;
-  }
-  template <class Good>
-  void ask_lease(const Ask& ask, const concord::LeaseRequest& lease, Good good) {
-    if (asker.waits(lease.id)) return hub.refuse(ask, Code::kBusy, "the last request about this lease is not answered yet");
-    asker.ask({"in/lease", encode(lease), lease.id, {}, {}}, [this, ask, good](const Answer& answer) {
-      if (!answer.ok) return hub.refuse(ask, code_of(answer.code), answer.message);
-      good();
-    });
   }
 
   /// A path for the client that asked: points at most 0.25 m apart, each with its clearance, in the frame it wants.

@@ -44,9 +44,8 @@ OwnMaps::OwnMaps(Desk& desk) : desk_(desk) {
 OwnMaps::Own* OwnMaps::own_of(const std::string& agent) {
   if (const auto it = by_agent_.find(agent); it != by_agent_.end()) return it->second.get();
   if (by_agent_.size() >= kMost) {
-    const auto oldest = std::min_element(by_agent_.begin(), by_agent_.end(), [](const auto& a, const auto& b) {
-      return a.second->used < b.second->used;
-    });
+    const auto oldest = std::min_element(by_agent_.begin(), by_agent_.end(),
+                                         [](const auto& a, const auto& b) { return a.second->used < b.second->used; });
     by_agent_.erase(oldest);
   }
   return by_agent_.emplace(agent, std::make_unique<Own>(desk_.context, agent)).first->second.get();
@@ -70,7 +69,8 @@ void OwnMaps::tracking(const Session& session) {
 
 Granted<OwnMaps::Own*> OwnMaps::open(const Session& session) {
   if (session.agent.empty()) return no(Code::kBadFrame, "this client is no agent; say agent and frame_id in hello");
-  if (session.tracking_lost) return no(Code::kTrackingLost, "the device does not know where it is; look around until it does");
+  if (session.tracking_lost)
+    return no(Code::kTrackingLost, "the device does not know where it is; look around until it does");
   Own* own = own_of(session.agent);
   if (own->over == session.frame_id) return no(Code::kBadFrame, "this frame was reset; begin another frame_id");
   own->used = desk_.now();
@@ -115,10 +115,12 @@ void OwnMaps::send_map(const Ask& ask, const SendMapRequest& request) {
   const auto opened = open(*desk_.hub.find(ask.session));
   if (!opened) return desk_.refuse(ask, opened.error());
   Own& own = **opened;
-  if (own.mapper.occupied() == 0) return desk_.hub.refuse(ask, Code::kEmpty, "nothing was scanned yet: look around, a wall needs two looks");
+  if (own.mapper.occupied() == 0)
+    return desk_.hub.refuse(ask, Code::kEmpty, "nothing was scanned yet: look around, a wall needs two looks");
   publish(own);
   if (request.final) own.mapper.end_sequence();
-  desk_.hub.answer(ask, SendMapAnswer{own.mapper.occupied(), own.mapper.known() - own.mapper.occupied(), own.sender.revision()});
+  desk_.hub.answer(
+      ask, SendMapAnswer{own.mapper.occupied(), own.mapper.known() - own.mapper.occupied(), own.sender.revision()});
 }
 
 }  // namespace concord::hmd

@@ -4,8 +4,8 @@
 
 namespace concord::hmd {
 
-/// Each works on one request: answers or refuses it through `desk.hub`, at once or when the stack has answered. They are
-/// in requests_*.cpp, by what they are about.
+/// Each works on one request: answers or refuses it through `desk.hub`, at once or when the stack has answered. They
+/// are in requests_*.cpp, by what they are about.
 void work_on(Desk& desk, const Ask& ask, const AgentsRequest& request);
 void work_on(Desk& desk, const Ask& ask, const ResetRequest& request);
 void work_on(Desk& desk, const Ask& ask, const RemoveRequest& request);

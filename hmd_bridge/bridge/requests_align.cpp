@@ -37,9 +37,8 @@ Evidence to_hmd(const AlignEvidence& e) {
 void take_result(Desk& desk, AlignResult result) {
   Alignments& all = alignments_of(desk);
   if (all.results.size() >= kMaxKept && !all.results.contains(result.id)) {
-    const auto oldest = std::min_element(all.results.begin(), all.results.end(), [](const auto& a, const auto& b) {
-      return a.second.utime < b.second.utime;
-    });
+    const auto oldest = std::min_element(all.results.begin(), all.results.end(),
+                                         [](const auto& a, const auto& b) { return a.second.utime < b.second.utime; });
     all.results.erase(oldest);
   }
   const std::string id = result.id;
@@ -47,8 +46,8 @@ void take_result(Desk& desk, AlignResult result) {
   if (it->second.author.empty() && fresh) {  // nobody asked: it is an offer
     const AlignResult& offer = it->second;
     desk.hub.tell_all("alignment/" + offer.source.agent,
-                      event_text(AlignmentEvent{offer.source.agent, id, hmd::to_hmd(offer.evidence.T_target_source), offer.slip,
-                                                offer.slip_angle, to_hmd(offer.evidence), offer.open}));
+                      event_text(AlignmentEvent{offer.source.agent, id, hmd::to_hmd(offer.evidence.T_target_source),
+                                                offer.slip, offer.slip_angle, to_hmd(offer.evidence), offer.open}));
   }
   desk.asker.arrived(id);
 }
@@ -61,7 +60,9 @@ void ask_align(Desk& desk, const Ask& ask, concord::AlignRequest request, Found 
   request.author = desk.author(ask);
   request.utime = desk.now();
   const std::string id = request.id;
-  Asker::Question question{"in/align", encode(request), id, [&desk, id] { return alignments_of(desk).results.contains(id); }, {}, kAlignPatience};
+  Asker::Question question{"in/align", encode(request),
+                           id,         [&desk, id] { return alignments_of(desk).results.contains(id); },
+                           {},         kAlignPatience};
   desk.asker.ask(std::move(question), [&desk, ask, id, found](const Answer& answer) {
     if (!answer.ok) return desk.hub.refuse(ask, code_of(answer.code), answer.message);
     found(alignments_of(desk).results.at(id));
@@ -81,11 +82,13 @@ void hear_alignments(Desk& desk) {
   const NodeContext& context = desk.context;
   listen<AlignResult>(context.bus, context.counters, context.process, "out/align",
                       [&desk](const std::string&, AlignResult result) { take_result(desk, std::move(result)); });
-  listen<AgentPose>(context.bus, context.counters, context.process, "in/.*/pose", [&desk](const std::string& channel, AgentPose pose) {
-    auto& poses = alignments_of(desk).poses;
-    const std::string agent = channel.substr(3, channel.size() - 3 - std::string("/pose").size());
-    if (poses.size() < kMaxRobots || poses.contains(agent)) poses.insert_or_assign(agent, Alignments::Pose{std::move(pose), desk.now()});
-  });
+  listen<AgentPose>(context.bus, context.counters, context.process, "in/.*/pose",
+                    [&desk](const std::string& channel, AgentPose pose) {
+                      auto& poses = alignments_of(desk).poses;
+                      const std::string agent = channel.substr(3, channel.size() - 3 - std::string("/pose").size());
+                      if (poses.size() < kMaxRobots || poses.contains(agent))
+                        poses.insert_or_assign(agent, Alignments::Pose{std::move(pose), desk.now()});
+                    });
 }
 
 void work_on(Desk& desk, const Ask& ask, const AlignRequest& request) {
@@ -105,14 +108,16 @@ void work_on(Desk& desk, const Ask& ask, const AlignRequest& request) {
 
 void work_on(Desk& desk, const Ask& ask, const ReferenceRequest& request) {
   const Session& session = *desk.hub.find(ask.session);
-  if (session.agent.empty()) return desk.hub.refuse(ask, Code::kBadFrame, "this client is no agent; say agent and frame_id in hello");
+  if (session.agent.empty())
+    return desk.hub.refuse(ask, Code::kBadFrame, "this client is no agent; say agent and frame_id in hello");
   if (session.tracking_lost) return desk.hub.refuse(ask, Code::kTrackingLost, "the device does not know where it is");
   const AgentState* robot = desk.world.agent(request.robot);
   if (robot == nullptr) return desk.hub.refuse(ask, Code::kNoRobot, "no robot is called " + request.robot);
   if (robot->known == 0) return desk.hub.refuse(ask, Code::kNoModel, "it has sent no submap to be compared with");
   const auto& poses = alignments_of(desk).poses;
   const auto pose = poses.find(request.robot);
-  if (pose == poses.end() || desk.now() - pose->second.heard > kStale || pose->second.pose.frame_id != robot->frame_id) {
+  if (pose == poses.end() || desk.now() - pose->second.heard > kStale ||
+      pose->second.pose.frame_id != robot->frame_id) {
     return desk.hub.refuse(ask, Code::kStale, "it has not said for 2 s where it is in its own frame");
   }
   const auto T_own_base = from_hmd(request.T_own_base);
@@ -134,7 +139,8 @@ void work_on(Desk& desk, const Ask& ask, const ReferenceRequest& request) {
 void work_on(Desk& desk, const Ask& ask, const AlignAcceptRequest& request) {
   const auto& results = alignments_of(desk).results;
   const auto it = results.find(request.align);
-  if (it == results.end()) return desk.hub.refuse(ask, Code::kExpired, "nothing is kept of this alignment; ask for it again");
+  if (it == results.end())
+    return desk.hub.refuse(ask, Code::kExpired, "nothing is kept of this alignment; ask for it again");
   const AlignResult& result = it->second;
   const AgentState* target = desk.world.agent(result.target);
   // The first pair founds the map in the target's frame.

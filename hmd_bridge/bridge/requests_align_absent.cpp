@@ -5,7 +5,9 @@
 namespace concord::hmd {
 namespace {
 
-void not_here(Desk& desk, const Ask& ask) { desk.hub.refuse(ask, Code::kUnavailable, "no process of this stack aligns"); }
+void not_here(Desk& desk, const Ask& ask) {
+  desk.hub.refuse(ask, Code::kUnavailable, "no process of this stack aligns");
+}
 
 }  // namespace
 

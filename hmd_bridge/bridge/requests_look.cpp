@@ -21,7 +21,8 @@ struct Looked {
 
 /// The layer that a request means, and where its frame lies in the layer's.
 Granted<Looked> layer_of(Desk& desk, const Ask& ask, const ViewRequest& request) {
-  if ((request.layer == Layer::kAgent) != request.agent.has_value()) return no(Code::kBadRequest, "agent is given with layer agent alone");
+  if ((request.layer == Layer::kAgent) != request.agent.has_value())
+    return no(Code::kBadRequest, "agent is given with layer agent alone");
   if (request.layer == Layer::kAgent) {
     if (desk.world.agent(*request.agent) == nullptr) return no(Code::kNoAgent, "no agent is called " + *request.agent);
     LayerCopy* copy = desk.world.agent_layer(*request.agent);
@@ -56,14 +57,16 @@ void work_on(Desk& desk, const Ask& ask, const ViewRequest& request) {
   if (!radii_are_good(request.radii, static_cast<std::size_t>(layer.store.levels()))) {
     return desk.hub.refuse(ask, Code::kBadRequest, "radii rise from 0 up, one for each level of the layer at most");
   }
-  if (request.z && (*request.z)[0] >= (*request.z)[1]) return desk.hub.refuse(ask, Code::kBadRequest, "z goes from low to high");
+  if (request.z && (*request.z)[0] >= (*request.z)[1])
+    return desk.hub.refuse(ask, Code::kBadRequest, "z goes from low to high");
   ViewRegion region;
   region.centre = looked->T_layer_frame * Eigen::Vector3d(vector_of(request.centre));
   region.radii = request.radii;
   region.z = request.z;
   region.resolution = desk.context.site.resolution;
   const auto [blocks, lacking] = desk.hub.look(*desk.hub.find(ask.session), looked->stream, region);
-  desk.hub.answer(ask, ViewAnswer{looked->stream, static_cast<std::int64_t>(blocks), static_cast<std::int64_t>(lacking)});
+  desk.hub.answer(ask,
+                  ViewAnswer{looked->stream, static_cast<std::int64_t>(blocks), static_cast<std::int64_t>(lacking)});
 }
 
 void work_on(Desk& desk, const Ask& ask, const ViewCloseRequest& request) {
@@ -77,19 +80,20 @@ void work_on(Desk& desk, const Ask& ask, const MinimapRequest& request) {
   const DownsampleRequest downsample{desk.id(ask), request.agent, request.resolution};
   const std::string id = downsample.id;
   desk.points[id];
-  desk.asker.ask({"in/downsample", encode(downsample, desk.now()), id, [&desk, id] { return all_there(desk.points, id); }, {}},
-                 [&desk, ask, id](const Answer& answer) {
-                   const auto parts = std::move(desk.points.extract(id).mapped());
-                   if (!answer.ok) return desk.hub.refuse(ask, code_of(answer.code), answer.message);
-                   std::vector<Eigen::Vector3f> points;
-                   for (const auto& [number, part] : parts) points.insert(points.end(), part.points.begin(), part.points.end());
-                   const FrameHead head{.kind = FrameKind::kPoints,
-                                        .stream = static_cast<std::uint32_t>(ask.id),
-                                        .count = static_cast<std::uint32_t>(points.size())};
-                   desk.hub.send(ask, std::make_shared<const Bytes>(make_frame(head, points_payload(points))));
-                   const Downsampled& first = parts.begin()->second;
-                   desk.hub.answer(ask, MinimapAnswer{first.agent, first.frame_id, static_cast<std::int64_t>(points.size())});
-                 });
+  desk.asker.ask(
+      {"in/downsample", encode(downsample, desk.now()), id, [&desk, id] { return all_there(desk.points, id); }, {}},
+      [&desk, ask, id](const Answer& answer) {
+        const auto parts = std::move(desk.points.extract(id).mapped());
+        if (!answer.ok) return desk.hub.refuse(ask, code_of(answer.code), answer.message);
+        std::vector<Eigen::Vector3f> points;
+        for (const auto& [number, part] : parts) points.insert(points.end(), part.points.begin(), part.points.end());
+        const FrameHead head{.kind = FrameKind::kPoints,
+                             .stream = static_cast<std::uint32_t>(ask.id),
+                             .count = static_cast<std::uint32_t>(points.size())};
+        desk.hub.send(ask, std::make_shared<const Bytes>(make_frame(head, points_payload(points))));
+        const Downsampled& first = parts.begin()->second;
+        desk.hub.answer(ask, MinimapAnswer{first.agent, first.frame_id, static_cast<std::int64_t>(points.size())});
+      });
 }
 
 void work_on(Desk& desk, const Ask& ask, const ConflictsRequest& request) {
@@ -97,17 +101,20 @@ void work_on(Desk& desk, const Ask& ask, const ConflictsRequest& request) {
   const concord::ConflictRequest conflicts{desk.id(ask), request.most};
   const std::string id = conflicts.id;
   desk.conflicts[id];
-  desk.asker.ask(
-      {"in/conflict_request", encode(conflicts, desk.now()), id, [&desk, id] { return all_there(desk.conflicts, id); }, {}},
-      [&desk, ask, id](const Answer& answer) {
-        const auto parts = std::move(desk.conflicts.extract(id).mapped());
-        if (!answer.ok) return desk.hub.refuse(ask, code_of(answer.code), answer.message);
-        ConflictsAnswer out{{}, parts.begin()->second.regions_in_all, parts.begin()->second.voxels_in_all};
-        for (const auto& [number, part] : parts) {
-          for (const concord::ConflictRegion& region : part.regions) out.regions.push_back(to_hmd(region));
-        }
-        desk.hub.answer(ask, out);
-      });
+  desk.asker.ask({"in/conflict_request",
+                  encode(conflicts, desk.now()),
+                  id,
+                  [&desk, id] { return all_there(desk.conflicts, id); },
+                  {}},
+                 [&desk, ask, id](const Answer& answer) {
+                   const auto parts = std::move(desk.conflicts.extract(id).mapped());
+                   if (!answer.ok) return desk.hub.refuse(ask, code_of(answer.code), answer.message);
+                   ConflictsAnswer out{{}, parts.begin()->second.regions_in_all, parts.begin()->second.voxels_in_all};
+                   for (const auto& [number, part] : parts) {
+                     for (const concord::ConflictRegion& region : part.regions) out.regions.push_back(to_hmd(region));
+                   }
+                   desk.hub.answer(ask, out);
+                 });
 }
 
 void work_on(Desk& desk, const Ask& ask, const HistoryRequest& request) {
@@ -121,22 +128,24 @@ void work_on(Desk& desk, const Ask& ask, const HistoryRequest& request) {
   history.most = request.most;
   const std::string id = history.id;
   desk.history[id];
-  desk.asker.ask({"in/history_request", encode(history, desk.now()), id, [&desk, id] { return all_there(desk.history, id); }, {}},
-                 [&desk, ask, id](const Answer& answer) {
-                   const auto parts = std::move(desk.history.extract(id).mapped());
-                   if (!answer.ok) return desk.hub.refuse(ask, code_of(answer.code), answer.message);
-                   HistoryAnswer out;
-                   for (const auto& [number, part] : parts) {
-                     for (const concord::Operation& operation : part.operations) out.operations.push_back(to_hmd(operation));
-                   }
-                   desk.hub.answer(ask, out);
-                 });
+  desk.asker.ask(
+      {"in/history_request", encode(history, desk.now()), id, [&desk, id] { return all_there(desk.history, id); }, {}},
+      [&desk, ask, id](const Answer& answer) {
+        const auto parts = std::move(desk.history.extract(id).mapped());
+        if (!answer.ok) return desk.hub.refuse(ask, code_of(answer.code), answer.message);
+        HistoryAnswer out;
+        for (const auto& [number, part] : parts) {
+          for (const concord::Operation& operation : part.operations) out.operations.push_back(to_hmd(operation));
+        }
+        desk.hub.answer(ask, out);
+      });
 }
 
 void work_on(Desk& desk, const Ask& ask, const SceneGetRequest& request) {
   const auto where = desk.place(ask, request.frame);
   if (!where) return desk.refuse(ask, where.error());
-  if (!(request.radius > 0 && request.radius <= kMaxSceneRadius)) return desk.hub.refuse(ask, Code::kBadRequest, "a radius is up to 20 m");
+  if (!(request.radius > 0 && request.radius <= kMaxSceneRadius))
+    return desk.hub.refuse(ask, Code::kBadRequest, "a radius is up to 20 m");
   const BrickMap& map = desk.world.map().map();
   if (map.empty()) return desk.hub.refuse(ask, Code::kNoMap, "there is no map yet");
   const double r = desk.context.site.resolution;
@@ -157,7 +166,8 @@ void work_on(Desk& desk, const Ask& ask, const SceneGetRequest& request) {
   for (const VoxelBox& box : to_boxes(voxels)) {
     answer.voxels.boxes.push_back({box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z});
   }
-  if (answer.voxels.boxes.size() > kMaxSceneBoxes) return desk.hub.refuse(ask, Code::kTooLarge, "too much for one answer; take a smaller radius");
+  if (answer.voxels.boxes.size() > kMaxSceneBoxes)
+    return desk.hub.refuse(ask, Code::kTooLarge, "too much for one answer; take a smaller radius");
   for (const concord::Zone& zone : desk.world.zones()) answer.zones.push_back(to_hmd(zone));
   desk.hub.answer(ask, answer);
 }
@@ -168,7 +178,8 @@ void work_on(Desk& desk, const Ask& ask, const GridRequest& request) {
   // Layers of voxels whose centres lie between the heights, as the planner counts them.
   const double first_layer = std::ceil(low / r - 0.5 - 1e-9), end_layer = std::ceil(high / r - 0.5 - 1e-9);
   if (!(first_layer < end_layer) || std::abs(first_layer) > kMaxVoxel || std::abs(end_layer) > kMaxVoxel) {
-    return desk.hub.refuse(ask, Code::kOutOfBounds, "z goes from low to high within the map, over the centre of a voxel at least");
+    return desk.hub.refuse(ask, Code::kOutOfBounds,
+                           "z goes from low to high within the map, over the centre of a voxel at least");
   }
   const auto from = static_cast<std::int32_t>(first_layer), to = static_cast<std::int32_t>(end_layer);
   struct Column {
@@ -192,7 +203,8 @@ void work_on(Desk& desk, const Ask& ask, const GridRequest& request) {
   });
   if (max.x < min.x) return desk.hub.refuse(ask, Code::kNoMap, "nothing was observed between these heights");
   const std::int64_t width = std::int64_t{max.x} - min.x + 1, depth = std::int64_t{max.y} - min.y + 1;
-  if (width * depth > kMaxGridCells) return desk.hub.refuse(ask, Code::kTooLarge, "the map is too wide for one answer; use the grid layers");
+  if (width * depth > kMaxGridCells)
+    return desk.hub.refuse(ask, Code::kTooLarge, "the map is too wide for one answer; use the grid layers");
 
   GridAnswer answer{r, {min.x, min.y}, {static_cast<std::int32_t>(width), static_cast<std::int32_t>(depth)}, 0, 0};
   Bytes payload;
@@ -207,7 +219,8 @@ void work_on(Desk& desk, const Ask& ask, const GridRequest& request) {
       ++(column.occupied ? answer.occupied : answer.free);
       const std::int64_t x = place.second * 8 + (local & 7) - min.x, y = place.first * 8 + (local >> 3) - min.y;
       const auto cell = static_cast<std::size_t>(x + y * width);
-      payload[begin + cell / 4] = static_cast<std::uint8_t>(payload[begin + cell / 4] | (column.occupied ? 2 : 1) << (2 * (cell % 4)));
+      payload[begin + cell / 4] =
+          static_cast<std::uint8_t>(payload[begin + cell / 4] | (column.occupied ? 2 : 1) << (2 * (cell % 4)));
     }
   }
   const FrameHead head{.kind = FrameKind::kCells,

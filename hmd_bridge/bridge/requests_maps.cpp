@@ -13,7 +13,8 @@ constexpr std::int64_t kLoadAgain = 1'000'000;
 
 Code load_code(const std::string& code) {
   if (code == "NO_MAP" || code == "NOT_FOUND") return Code::kNotFound;
-  if (code == "MALFORMED" || code == "NOT_FINITE" || code == "BAD_TRANSFORM" || code == "RES_MISMATCH") return Code::kCorrupt;
+  if (code == "MALFORMED" || code == "NOT_FINITE" || code == "BAD_TRANSFORM" || code == "RES_MISMATCH")
+    return Code::kCorrupt;
   return code_of(code);
 }
 
@@ -27,7 +28,13 @@ void run_save(Desk& desk, const Ask& ask, const std::shared_ptr<SaveRun>& run) {
   const std::size_t step = run->answer.files.size();
   if (step == run->request.formats.size()) return desk.hub.answer(ask, run->answer);
   const std::string format = text_of(run->request.formats[step]);
-  const MapRequest save{desk.id(ask) + "-" + format, MapRequest::Op::kSave, run->request.map, format, run->request.overwrite, ""};
+  const MapRequest save{desk.id(ask) + "-" + format,
+                        MapRequest::Op::kSave,
+                        run->request.map,
+                        format,
+                        run->request.overwrite,
+                        "",
+                        desk.now()};
   Asker::Question question{"in/map_request", encode(save, desk.now()), save.id, {}, {}, kSavePatience};
   desk.asker.ask(std::move(question), [&desk, ask, run, format](const Answer& answer) {
     if (!answer.ok) return desk.hub.refuse(ask, code_of(answer.code), answer.message);
@@ -38,7 +45,7 @@ void run_save(Desk& desk, const Ask& ask, const std::shared_ptr<SaveRun>& run) {
 
 /// Asks merge which files there are, and goes on with what it says.
 void list_maps(Desk& desk, const Ask& ask, const std::string& id, std::function<void(const MapList&)> then) {
-  const MapRequest list{id, MapRequest::Op::kList, "", "", false, ""};
+  const MapRequest list{id, MapRequest::Op::kList, "", "", false, "", desk.now()};
   desk.maps.erase(id);
   desk.watched.insert(id);
   desk.asker.ask({"in/map_request", encode(list, desk.now()), id, [&desk, id] { return desk.maps.contains(id); }, {}},
@@ -52,10 +59,13 @@ void list_maps(Desk& desk, const Ask& ask, const std::string& id, std::function<
 
 void load(Desk& desk, const Ask& ask, const LoadRequest& request, const std::string& format) {
   const bool native = format == "concord";
-  if (native && request.agent) return desk.hub.refuse(ask, Code::kBadRequest, "the agents of a concord file keep their names");
-  const MapRequest load{desk.id(ask), MapRequest::Op::kLoad, request.map, format, false, request.agent.value_or("")};
+  if (native && request.agent)
+    return desk.hub.refuse(ask, Code::kBadRequest, "the agents of a concord file keep their names");
+  const MapRequest load{desk.id(ask), MapRequest::Op::kLoad,      request.map, format,
+                        false,        request.agent.value_or(""), desk.now()};
   // A native map is checked by merge, taken in by ingest, and corrected by merge: both are asked until both have it.
-  Asker::Question question{"in/map_request", encode(load, desk.now()), load.id, {}, {}, Asker::kLoadPatience, kLoadAgain};
+  Asker::Question question{"in/map_request", encode(load, desk.now()), load.id, {}, {}, Asker::kLoadPatience,
+                           kLoadAgain};
   if (native) question.processes = {"ingest", "merge"};
   const std::string agent = request.agent.value_or(request.map);
   desk.asker.ask(std::move(question), [&desk, ask, agent](const Answer& answer) {

@@ -16,7 +16,8 @@ Granted<concord::EditRequest> edit_of(Desk& desk, const Ask& ask, const EditRequ
   if (!where) return tl::unexpected(where.error());
   auto shape = from_hmd(request.shape);
   if (!shape) return no(shape.error());
-  if ((request.op == EditOp::kMove) != request.move.has_value()) return no(Code::kBadRequest, "move is given with op move alone");
+  if ((request.op == EditOp::kMove) != request.move.has_value())
+    return no(Code::kBadRequest, "move is given with op move alone");
   concord::EditRequest edit;
   edit.id = desk.id(ask);
   edit.author = desk.author(ask);
@@ -31,7 +32,8 @@ Granted<concord::EditRequest> edit_of(Desk& desk, const Ask& ask, const EditRequ
   return edit;
 }
 
-Granted<concord::ZoneRequest> zone_of(Desk& desk, const Ask& ask, const std::string& name, ZoneKind kind, Frame frame, const Volume& volume) {
+Granted<concord::ZoneRequest> zone_of(Desk& desk, const Ask& ask, const std::string& name, ZoneKind kind, Frame frame,
+                                      const Volume& volume) {
   const auto where = desk.place(ask, frame);
   if (!where) return tl::unexpected(where.error());
   auto drawn = from_hmd(volume);
@@ -63,7 +65,9 @@ void undo_or_redo(Desk& desk, const Ask& ask, const std::string& edit, bool redo
 void work_on(Desk& desk, const Ask& ask, const EditRequest& request) {
   const auto edit = edit_of(desk, ask, request);
   if (!edit) return desk.refuse(ask, edit.error());
-  desk.forward(ask, "in/edit", encode(*edit), [id = edit->id](const Answer& a) { return EditAnswer{id, a.revision, a.count}; });
+  desk.forward(ask, "in/edit", encode(*edit), [id = edit->id](const Answer& a) {
+    return EditAnswer{id, a.revision, a.count};
+  });
 }
 
 void work_on(Desk& desk, const Ask& ask, const UndoRequest& request) { undo_or_redo(desk, ask, request.edit, false); }
@@ -72,7 +76,8 @@ void work_on(Desk& desk, const Ask& ask, const RedoRequest& request) { undo_or_r
 void work_on(Desk& desk, const Ask& ask, const ZoneAddRequest& request) {
   const auto zone = zone_of(desk, ask, request.name, request.zone_kind, request.frame, request.volume);
   if (!zone) return desk.refuse(ask, zone.error());
-  desk.forward(ask, "in/zone", encode(*zone), [](const Answer& a) { return ZoneAddAnswer{a.revision}; }, zone_code);
+  desk.forward(
+      ask, "in/zone", encode(*zone), [](const Answer& a) { return ZoneAddAnswer{a.revision}; }, zone_code);
 }
 
 void work_on(Desk& desk, const Ask& ask, const ZoneChangeRequest& request) {
@@ -80,7 +85,8 @@ void work_on(Desk& desk, const Ask& ask, const ZoneChangeRequest& request) {
   if (!zone) return desk.refuse(ask, zone.error());
   zone->op = concord::ZoneRequest::Op::kChange;
   zone->base_revision = request.base_revision.value_or(kAnyRevision);
-  desk.forward(ask, "in/zone", encode(*zone), [](const Answer& a) { return ZoneChangeAnswer{a.revision}; }, zone_code);
+  desk.forward(
+      ask, "in/zone", encode(*zone), [](const Answer& a) { return ZoneChangeAnswer{a.revision}; }, zone_code);
 }
 
 void work_on(Desk& desk, const Ask& ask, const ZoneDeleteRequest& request) {
@@ -93,7 +99,8 @@ void work_on(Desk& desk, const Ask& ask, const ZoneDeleteRequest& request) {
   zone.volume = concord::Box{};
   zone.base_revision = request.base_revision.value_or(kAnyRevision);
   zone.utime = desk.now();
-  desk.forward(ask, "in/zone", encode(zone), [](const Answer& a) { return ZoneDeleteAnswer{a.revision}; }, zone_code);
+  desk.forward(
+      ask, "in/zone", encode(zone), [](const Answer& a) { return ZoneDeleteAnswer{a.revision}; }, zone_code);
 }
 
 void work_on(Desk& desk, const Ask& ask, const LeaseHoldRequest& request) {
@@ -101,13 +108,16 @@ void work_on(Desk& desk, const Ask& ask, const LeaseHoldRequest& request) {
   if (!where) return desk.refuse(ask, where.error());
   auto volume = from_hmd(request.volume);
   if (!volume) return desk.refuse(ask, {code_of(volume.error()), volume.error().message});
-  const concord::LeaseRequest lease{desk.lease_id(ask, request.lease), desk.author(ask), true, std::move(*volume), where->frame, desk.now()};
-  desk.ask_lease(ask, lease, [&desk, ask] { desk.hub.answer(ask, LeaseHoldAnswer{}); });
+  const concord::LeaseRequest lease{desk.id(ask), desk.author(ask),   desk.lease_id(ask, request.lease),
+                                    true,         std::move(*volume), where->frame,
+                                    desk.now()};
+  desk.forward(ask, "in/lease", encode(lease), [](const Answer&) { return LeaseHoldAnswer{}; });
 }
 
 void work_on(Desk& desk, const Ask& ask, const LeaseFreeRequest& request) {
-  concord::LeaseRequest lease{desk.lease_id(ask, request.lease), desk.author(ask), false, concord::Box{}, {}, desk.now()};
-  desk.ask_lease(ask, lease, [&desk, ask] { desk.hub.answer(ask, LeaseFreeAnswer{}); });
+  const concord::LeaseRequest lease{
+      desk.id(ask), desk.author(ask), desk.lease_id(ask, request.lease), false, concord::Box{}, {}, desk.now()};
+  desk.forward(ask, "in/lease", encode(lease), [](const Answer&) { return LeaseFreeAnswer{}; });
 }
 
 namespace {
@@ -117,8 +127,8 @@ struct SceneRun {
   std::vector<concord::EditRequest> edits;
   std::vector<concord::ZoneRequest> zones;
   std::size_t next = 0;
-  /// What this scene itself has done is no change by others: as long as revisions follow each other, nobody else changed
-  /// anything in between, and the next step may go by the last one.
+  /// What this scene itself has done is no change by others: as long as revisions follow each other, nobody else
+  /// changed anything in between, and the next step may go by the last one.
   std::int64_t base = 0;
   SceneSendAnswer answer;
 };
@@ -130,7 +140,8 @@ void run_scene(Desk& desk, const Ask& ask, const std::shared_ptr<SceneRun>& run)
   if (is_edit) run->edits[step].base_revision = run->base;
   const concord::ZoneRequest* zone = is_edit ? nullptr : &run->zones[step - run->edits.size()];
   const std::string id = is_edit ? run->edits[step].id : zone->id;
-  Asker::Question question{is_edit ? "in/edit" : "in/zone", is_edit ? encode(run->edits[step]) : encode(*zone), id, {}, {}};
+  Asker::Question question{
+      is_edit ? "in/edit" : "in/zone", is_edit ? encode(run->edits[step]) : encode(*zone), id, {}, {}};
   desk.asker.ask(std::move(question), [&desk, ask, run, is_edit, id](const Answer& answer) {
     if (desk.hub.find(ask.session) == nullptr) return;
     if (!answer.ok) {
@@ -155,7 +166,8 @@ void work_on(Desk& desk, const Ask& ask, const SceneSendRequest& request) {
   run->answer.revision = run->base = request.base_revision;
   if (request.edits.empty() && request.zones.empty()) return desk.hub.refuse(ask, Code::kEmpty, "nothing to do");
   for (const SceneEdit& part : request.edits) {
-    if (part.op == EditOp::kMove) return desk.hub.refuse(ask, Code::kBadRequest, "a scene adds and deletes; move with edit");
+    if (part.op == EditOp::kMove)
+      return desk.hub.refuse(ask, Code::kBadRequest, "a scene adds and deletes; move with edit");
     auto edit = edit_of(desk, ask, {part.op, request.frame, part.shape, {}, request.base_revision});
     if (!edit) return desk.refuse(ask, edit.error());
     edit->id += "-e" + std::to_string(run->edits.size());
@@ -165,7 +177,8 @@ void work_on(Desk& desk, const Ask& ask, const SceneSendRequest& request) {
     auto zone = zone_of(desk, ask, part.name, part.zone_kind, request.frame, part.volume);
     if (!zone) return desk.refuse(ask, zone.error());
     const auto& known = desk.world.zones();
-    const bool there = std::any_of(known.begin(), known.end(), [&](const concord::Zone& z) { return z.name == part.name; });
+    const bool there =
+        std::any_of(known.begin(), known.end(), [&](const concord::Zone& z) { return z.name == part.name; });
     zone->id += "-z" + std::to_string(run->zones.size());
     if (there) {
       zone->op = concord::ZoneRequest::Op::kChange;

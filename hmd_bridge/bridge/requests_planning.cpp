@@ -15,34 +15,39 @@ constexpr std::int64_t kMaxInsideCells = 1'000'000;
 Code plan_code(const std::string& status) {
   if (status == "NO_MAP") return Code::kNoMap;
   if (status == "NO_POSE") return Code::kUnaligned;
-  if (status == "BAD_REQUEST" || status == "BUSY" || status == "TIMEOUT" || status == "TOO_LARGE") return code_of(status);
+  if (status == "BAD_REQUEST" || status == "BUSY" || status == "TIMEOUT" || status == "TOO_LARGE")
+    return code_of(status);
   return Code::kUnreachable;
 }
 
 /// Asks the planner and answers with the path in the frame that was asked for.
 template <class PathAnswerOf>
 void plan(Desk& desk, const Ask& ask, concord::PathRequest request, Frame frame, PathAnswerOf answer_of) {
-  if (desk.world.agent(request.robot) == nullptr) return desk.hub.refuse(ask, Code::kNoRobot, "no robot is called " + request.robot);
+  if (desk.world.agent(request.robot) == nullptr)
+    return desk.hub.refuse(ask, Code::kNoRobot, "no robot is called " + request.robot);
   request.id = desk.id(ask);
   const std::string id = request.id;
   desk.paths.erase(id);
   desk.watched.insert(id);
-  desk.asker.ask({"in/path_request", encode(request, desk.now()), id, [&desk, id] { return desk.paths.contains(id); }, {}},
-                 [&desk, ask, id, frame, answer_of](const Answer& answer) {
-                   desk.watched.erase(id);
-                   const auto node = desk.paths.extract(id);
-                   if (!answer.ok) return desk.hub.refuse(ask, plan_code(answer.code), answer.code + ": " + answer.message);
-                   if (desk.hub.find(ask.session) == nullptr) return;
-                   const auto shown = desk.show(ask, node.mapped(), frame);
-                   if (!shown) return desk.refuse(ask, shown.error());
-                   desk.hub.answer(ask, answer_of(*shown));
-                 });
+  desk.asker.ask(
+      {"in/path_request", encode(request, desk.now()), id, [&desk, id] { return desk.paths.contains(id); }, {}},
+      [&desk, ask, id, frame, answer_of](const Answer& answer) {
+        desk.watched.erase(id);
+        const auto node = desk.paths.extract(id);
+        if (!answer.ok) return desk.hub.refuse(ask, plan_code(answer.code), answer.code + ": " + answer.message);
+        if (desk.hub.find(ask.session) == nullptr) return;
+        const auto shown = desk.show(ask, node.mapped(), frame);
+        if (!shown) return desk.refuse(ask, shown.error());
+        desk.hub.answer(ask, answer_of(*shown));
+      });
 }
 
 /// A robot with its disc in the volume's footprint, if any.
-Granted<std::optional<std::string>> who_stands_in(Desk& desk, const concord::Volume& volume, const Transform& T_map_frame) {
+Granted<std::optional<std::string>> who_stands_in(Desk& desk, const concord::Volume& volume,
+                                                  const Transform& T_map_frame) {
   const Site& site = desk.context.site;
-  const auto cells = footprint(volume, T_map_frame, site.resolution, site.planner.zmin, site.planner.zmax, kMaxInsideCells);
+  const auto cells =
+      footprint(volume, T_map_frame, site.resolution, site.planner.zmin, site.planner.zmax, kMaxInsideCells);
   if (!cells) return no(cells.error());
   for (const auto& [robot, pose] : desk.world.poses()) {
     const Eigen::Vector2d at = pose.T_map_base.translation().head<2>();
@@ -105,14 +110,16 @@ std::shared_ptr<ReplanWait> paths_now(const Desk& desk) {
 void take_back(Desk& desk, const Ask& ask, const std::string& edit, const std::string& why) {
   const concord::UndoRequest undo{edit + "-back", desk.author(ask), edit, false, desk.now()};
   desk.asker.ask({"in/undo", encode(undo), undo.id, {}, {}}, [&desk, ask, why](const Answer& answer) {
-    desk.hub.refuse(ask, Code::kNoPath, why + (answer.ok ? "; it was taken back" : "; and it could not be taken back: " + answer.message));
+    desk.hub.refuse(ask, Code::kNoPath,
+                    why + (answer.ok ? "; it was taken back" : "; and it could not be taken back: " + answer.message));
   });
 }
 
 }  // namespace
 
 void work_on(Desk& desk, const Ask& ask, const PathRequest& request) {
-  if (desk.world.agent(request.robot) == nullptr) return desk.hub.refuse(ask, Code::kNoRobot, "no robot is called " + request.robot);
+  if (desk.world.agent(request.robot) == nullptr)
+    return desk.hub.refuse(ask, Code::kNoRobot, "no robot is called " + request.robot);
   Session& session = *desk.hub.find(ask.session);
   if (const auto where = desk.place(ask, request.frame); !where) return desk.refuse(ask, where.error());
   if (request.follow) {

@@ -7,7 +7,7 @@
 namespace concord::hmd {
 namespace {
 
-constexpr std::int64_t kPublish = 20'000;   // microseconds
+constexpr std::int64_t kPublish = 20'000;  // microseconds
 constexpr std::int64_t kPeople = 100'000;
 constexpr std::size_t kMaxRobots = 1000;
 
@@ -26,9 +26,15 @@ World::World(const NodeContext& context, Hub& hub)
     : context_(context),
       hub_(hub),
       map_(context, hub,
-           {.stream = "out/map", .number = kMapStream, .keep = true, .shown = occupied, .second = {}, .shown_second = {}}),
-      conflicts_(context, hub,
-                 {.stream = "out/conflicts", .number = kConflictStream, .shown = occupied, .second = {}, .shown_second = {}}),
+           {.stream = "out/map",
+            .number = kMapStream,
+            .keep = true,
+            .shown = occupied,
+            .second = {},
+            .shown_second = {}}),
+      conflicts_(
+          context, hub,
+          {.stream = "out/conflicts", .number = kConflictStream, .shown = occupied, .second = {}, .shown_second = {}}),
       grid_(context, hub,
             {.stream = "out/grid",
              .number = kGridOccupiedStream,
@@ -65,14 +71,17 @@ void World::hear() {
   Bus& bus = context_.bus;
   Counters& counters = context_.counters;
   const std::string& self = context_.process;
-  listen<AgentList>(bus, counters, self, "out/agents", [this](const std::string&, const AgentList& list) { take_agents(list); });
+  listen<AgentList>(bus, counters, self, "out/agents",
+                    [this](const std::string&, const AgentList& list) { take_agents(list); });
   listen<MapPose>(bus, counters, self, "out/pose/.*", [this](const std::string&, const MapPose& pose) {
     if (poses_.size() >= kMaxRobots && !poses_.contains(pose.agent)) return;
     poses_.insert_or_assign(pose.agent, SeenPose{pose.T_map_base, pose.utime, context_.bus.now()});
   });
-  listen<concord::Path>(bus, counters, self, "out/path/.*", [this](const std::string&, const concord::Path& path) { take_path(path); });
+  listen<concord::Path>(bus, counters, self, "out/path/.*",
+                        [this](const std::string&, const concord::Path& path) { take_path(path); });
   listen<ProcessStatus>(bus, counters, self, "out/status/.*", [this](const std::string&, const ProcessStatus& status) {
-    const bool news = processes_.size() < kMaxRobots && processes_.insert_or_assign(status.process, context_.bus.now()).second;
+    const bool news =
+        processes_.size() < kMaxRobots && processes_.insert_or_assign(status.process, context_.bus.now()).second;
     if (news) tell_processes();
   });
   listen<Answer>(bus, counters, self, kAnswers, [this](const std::string&, const Answer& answer) {
@@ -98,7 +107,8 @@ void World::take_agents(const AgentList& list) {
 
 void World::take_path(const concord::Path& path) {
   if (path.active) {
-    if (paths_.size() < kMaxRobots || paths_.contains(path.robot)) paths_.insert_or_assign(path.robot, SeenPath{path, context_.bus.now()});
+    if (paths_.size() < kMaxRobots || paths_.contains(path.robot))
+      paths_.insert_or_assign(path.robot, SeenPath{path, context_.bus.now()});
   } else if (const auto it = paths_.find(path.robot); it != paths_.end() && it->second.path.id == path.id) {
     paths_.erase(it);
   }
@@ -138,7 +148,8 @@ LayerCopy* World::agent_layer(const std::string& id) {
   if (agent(id) == nullptr || agent_layers_.size() >= kMaxAgentLayers) return nullptr;
   auto layer = std::make_unique<LayerCopy>(
       context_, hub_,
-      LayerCopy::Config{.stream = "out/agent/" + id, .number = next_stream_++, .shown = occupied, .second = {}, .shown_second = {}});
+      LayerCopy::Config{
+          .stream = "out/agent/" + id, .number = next_stream_++, .shown = occupied, .second = {}, .shown_second = {}});
   return agent_layers_.emplace(id, std::move(layer)).first->second.get();
 }
 
@@ -174,7 +185,8 @@ void World::tell_people() {
     std::optional<Transform> T_map_frame = Transform::Identity();
     if (!session.agent.empty()) {
       const AgentState* state = agent(session.agent);
-      const bool placed = state != nullptr && state->aligned && state->frame_id == session.frame_id && !session.tracking_lost;
+      const bool placed =
+          state != nullptr && state->aligned && state->frame_id == session.frame_id && !session.tracking_lost;
       T_map_frame = placed ? std::optional(state->T_map_agent) : std::nullopt;
     }
     if (T_map_frame && session.T_own_head) person.T_map_head = to_hmd(*T_map_frame * *session.T_own_head);
@@ -188,7 +200,8 @@ void World::tell_people() {
   for (auto& [number, session] : hub_.sessions()) {
     if (!session.connection) continue;
     PeopleEvent event;
-    std::copy_if(people.begin(), people.end(), std::back_inserter(event.people), [n = number](const Person& p) { return p.person != n; });
+    std::copy_if(people.begin(), people.end(), std::back_inserter(event.people),
+                 [n = number](const Person& p) { return p.person != n; });
     std::string text = event_text(event);
     std::string& told = told_people_[number];
     if (text != told) hub_.tell(session, "people", told = std::move(text));

@@ -22,7 +22,7 @@ namespace concord::hmd {
 class LayerCopy {
  public:
   struct Config {
-    std::string stream;       ///< on the bus
+    std::string stream;        ///< on the bus
     std::uint32_t number = 0;  ///< for clients
     bool keep = false;         ///< whether map() is kept
     /// What of a brick is shown.

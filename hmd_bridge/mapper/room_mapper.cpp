@@ -19,7 +19,8 @@ bool contains(const Met& met, VoxelIndex voxel) {
 
 LogOdds log_odds_of(double p) {
   if (p >= 1) return kOccupied;
-  const double value = std::clamp(std::log(p / (1 - p)) * 1024, static_cast<double>(kFree), static_cast<double>(kOccupied));
+  const double value =
+      std::clamp(std::log(p / (1 - p)) * 1024, static_cast<double>(kFree), static_cast<double>(kOccupied));
   return static_cast<LogOdds>(std::lround(value));
 }
 
@@ -41,7 +42,8 @@ Result<std::vector<VoxelIndex>> RoomMapper::cells_of(const MeshPart& part, std::
       corners[i] = p.cast<double>() / resolution_;
     }
     if (!TriangleCells::append(corners, most, cells) || cells.size() > most) {
-      return refuse(Code::kTooLarge, "a mesh meets more cells than may be; send the room in parts, or only what is near");
+      return refuse(Code::kTooLarge,
+                    "a mesh meets more cells than may be; send the room in parts, or only what is near");
     }
   }
   std::sort(cells.begin(), cells.end());
@@ -56,7 +58,8 @@ bool RoomMapper::reached(VoxelIndex voxel, const Eigen::Vector3d& sensor) const 
 Result<void> RoomMapper::take(const MeshLook& look, std::int64_t sequence) {
   if (const auto fresh = check_sequence(sequence, next_sequence_); !fresh) return fresh;
   const Eigen::Vector3d sensor = look.T_own_sensor.translation();
-  if (sensor.cwiseAbs().maxCoeff() > kMaxVoxel * resolution_ - 2 * kReach) return refuse(Code::kOutOfBounds, "the sensor is beyond any map");
+  if (sensor.cwiseAbs().maxCoeff() > kMaxVoxel * resolution_ - 2 * kReach)
+    return refuse(Code::kOutOfBounds, "the sensor is beyond any map");
 
   std::map<std::uint32_t, std::vector<VoxelIndex>> fresh;
   std::size_t in_all = met_cells_, looked = 0, meshes = meshes_.size();
@@ -68,7 +71,8 @@ Result<void> RoomMapper::take(const MeshLook& look, std::int64_t sequence) {
     if (!meshes_.contains(part.number)) ++meshes;
     fresh[part.number] = std::move(*cells);
   }
-  if (in_all > kMaxCells || meshes > kMaxMeshes) return refuse(Code::kTooLarge, "all meshes together meet more cells than may be");
+  if (in_all > kMaxCells || meshes > kMaxMeshes)
+    return refuse(Code::kTooLarge, "all meshes together meet more cells than may be");
   if (cells_.size() > kMaxBricks) return refuse(Code::kTooLarge, "the map of this headset is full; reset it");
 
   next_sequence_ = sequence + 1;
@@ -119,7 +123,9 @@ void RoomMapper::judge(const Met& met, const Eigen::Vector3d& sensor) {
   const auto low = brick_of(voxel_of((sensor.array() - kReach).matrix(), resolution_));
   const auto high = brick_of(voxel_of((sensor.array() + kReach).matrix(), resolution_));
   for (auto& [index, cells] : cells_) {
-    if (index.x < low.x || index.y < low.y || index.z < low.z || index.x > high.x || index.y > high.y || index.z > high.z) continue;
+    if (index.x < low.x || index.y < low.y || index.z < low.z || index.x > high.x || index.y > high.y ||
+        index.z > high.z)
+      continue;
     for (int local = 0; local < kBrickVoxels; ++local) {
       std::uint8_t& cell = cells[static_cast<std::size_t>(local)];
       const VoxelIndex voxel = voxel_at(index, local);
@@ -167,22 +173,28 @@ Result<void> RoomMapper::take(const VoxelLook& look, std::int64_t sequence) {
   if (std::abs(look.resolution - resolution_) > 1e-9) {
     return refuse(Code::kBadResolution, "voxels must be " + std::to_string(resolution_) + " m wide, as the map's");
   }
-  const auto any = [](const ChunkBits& bits) { return std::any_of(bits.begin(), bits.end(), [](std::uint8_t b) { return b != 0; }); };
-  if (!std::any_of(look.chunks.begin(), look.chunks.end(), [&](const VoxelChunk& c) { return any(c.occupied) || any(c.free); })) {
+  const auto any = [](const ChunkBits& bits) {
+    return std::any_of(bits.begin(), bits.end(), [](std::uint8_t b) { return b != 0; });
+  };
+  if (!std::any_of(look.chunks.begin(), look.chunks.end(),
+                   [&](const VoxelChunk& c) { return any(c.occupied) || any(c.free); })) {
     return refuse(Code::kEmpty, "no voxel is occupied or free");
   }
-  if (map_.brick_count() + look.chunks.size() * 8 > kMaxBricks) return refuse(Code::kTooLarge, "the map of this headset is full; reset it");
+  if (map_.brick_count() + look.chunks.size() * 8 > kMaxBricks)
+    return refuse(Code::kTooLarge, "the map of this headset is full; reset it");
   next_sequence_ = sequence + 1;
   const LogOdds occupied = log_odds_of(look.p_occupied), free = log_odds_of(look.p_free);
   for (const VoxelChunk& chunk : look.chunks) {
     for (int part = 0; part < 8; ++part) {
-      const BrickIndex index{chunk.chunk.x * 2 + (part & 1), chunk.chunk.y * 2 + (part >> 1 & 1), chunk.chunk.z * 2 + (part >> 2)};
+      const BrickIndex index{chunk.chunk.x * 2 + (part & 1), chunk.chunk.y * 2 + (part >> 1 & 1),
+                             chunk.chunk.z * 2 + (part >> 2)};
       DenseBrick dense;
       dense.fill(kUnknown);
       const Brick* before = map_.find(index);
       if (before != nullptr) before->to_dense(dense);
       for (int local = 0; local < kBrickVoxels; ++local) {
-        const int x = (part & 1) * 8 + (local & 7), y = (part >> 1 & 1) * 8 + (local >> 3 & 7), z = (part >> 2) * 8 + (local >> 6);
+        const int x = (part & 1) * 8 + (local & 7), y = (part >> 1 & 1) * 8 + (local >> 3 & 7),
+                  z = (part >> 2) * 8 + (local >> 6);
         const auto bit = static_cast<std::size_t>(x + 16 * y + 256 * z);
         const auto is = [&](const ChunkBits& bits) { return (bits[bit / 8] >> (bit % 8) & 1) != 0; };
         if (is(chunk.occupied)) {

@@ -13,23 +13,23 @@ namespace concord::hmd {
 
 /// What a headset has scanned, as voxels in its own frame.
 ///
-/// Mesh looks follow SLAM-XR's voxelizer (Section III-A): each look adds 5 % to every cell that a mesh meets and takes 1 %
-/// off every existing voxel that none meets; a voxel exists from 60 % up. Cells begin at 50 %, and only those within
-/// kReach of the sensor are judged. Free space is HAC-SLAM's Algorithm 1 with an exact traversal (core/ray.hpp): a ray from the
-/// sensor to a met cell frees the cells before the first that is met, and never that one.
+/// Mesh looks follow SLAM-XR's voxelizer (Section III-A): each look adds 5 % to every cell that a mesh meets and takes
+/// 1 % off every existing voxel that none meets; a voxel exists from 60 % up. Cells begin at 50 %, and only those
+/// within kReach of the sensor are judged. Free space is HAC-SLAM's Algorithm 1 with an exact traversal (core/ray.hpp):
+/// a ray from the sensor to a met cell frees the cells before the first that is met, and never that one.
 class RoomMapper {
  public:
   static constexpr int kBegin = 50, kHit = 5, kMiss = 1, kExists = 60, kFull = 100;  ///< percent
   static constexpr double kReach = 5.0;                                              ///< metres
-  static constexpr std::size_t kMaxCells = 4'000'000;   ///< that all meshes meet, and that one look may look at
-  static constexpr std::size_t kMaxRays = 20'000;       ///< of one look; of more met cells each n-th, in turns
+  static constexpr std::size_t kMaxCells = 4'000'000;  ///< that all meshes meet, and that one look may look at
+  static constexpr std::size_t kMaxRays = 20'000;      ///< of one look; of more met cells each n-th, in turns
   static constexpr std::size_t kMaxBricks = 200'000;
   static constexpr std::size_t kMaxMeshes = 4096;
 
   explicit RoomMapper(double resolution) : resolution_(resolution) {}
 
-  /// Refused, and nothing has changed: meshes or a map larger than the limits (kTooLarge), a sensor or mesh beyond any map
-  /// (kOutOfBounds), a sequence that came before (kStale).
+  /// Refused, and nothing has changed: meshes or a map larger than the limits (kTooLarge), a sensor or mesh beyond any
+  /// map (kOutOfBounds), a sequence that came before (kStale).
   [[nodiscard]] Result<void> take(const MeshLook& look, std::int64_t sequence);
   /// Refused also: another resolution (kBadResolution), no voxel (kEmpty).
   [[nodiscard]] Result<void> take(const VoxelLook& look, std::int64_t sequence);

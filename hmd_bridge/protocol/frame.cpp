@@ -70,7 +70,8 @@ Result<BinaryFrame> read_frame(ByteSpan bytes) {
   if (bytes.size() < kFrameHeader) return malformed("a binary frame begins with a header of 24 bytes");
   const std::uint8_t kind = bytes[0], flags = bytes[1], level = bytes[2];
   if (!is_kind(kind)) return malformed("no kind of frame has this number");
-  if ((flags & ~(kDeflated | kWhole)) != 0 || level >= kLevels || bytes[3] != 0) return malformed("header bits that mean nothing");
+  if ((flags & ~(kDeflated | kWhole)) != 0 || level >= kLevels || bytes[3] != 0)
+    return malformed("header bits that mean nothing");
   ByteSpan in = bytes.subspan(4);
   BinaryFrame frame;
   frame.head.kind = static_cast<FrameKind>(kind);

@@ -19,7 +19,15 @@ inline constexpr std::size_t kMaxBinaryBytes = 4 << 20;     ///< of one binary f
 inline constexpr std::size_t kMaxInflatedBytes = 16 << 20;  ///< of its payload
 inline constexpr int kLevels = 6;
 
-enum class FrameKind : std::uint8_t { kBlock = 1, kForget = 2, kPoints = 3, kCells = 4, kLabels = 5, kMesh = 65, kVoxels = 66 };
+enum class FrameKind : std::uint8_t {
+  kBlock = 1,
+  kForget = 2,
+  kPoints = 3,
+  kCells = 4,
+  kLabels = 5,
+  kMesh = 65,
+  kVoxels = 66
+};
 
 struct FrameHead {
   FrameKind kind = FrameKind::kBlock;
@@ -42,8 +50,8 @@ struct BlockIndex {
 /// What one frame says of a block.
 struct BlockContent {
   BlockIndex block;
-  std::uint64_t told = 0;    ///< chunks spoken of: bit x + 4 y + 16 z
-  std::uint64_t filled = 0;  ///< those with any cell
+  std::uint64_t told = 0;         ///< chunks spoken of: bit x + 4 y + 16 z
+  std::uint64_t filled = 0;       ///< those with any cell
   std::vector<ChunkBits> chunks;  ///< one for each bit of `filled`, lowest first
 };
 
@@ -90,8 +98,8 @@ struct BinaryFrame {
 [[nodiscard]] Result<std::vector<BlockIndex>> read_forget(const BinaryFrame& frame);
 [[nodiscard]] Bytes points_payload(const std::vector<Eigen::Vector3f>& points);
 
-/// Refused: more or less than the header says (kMalformed), over 1024 parts or 500,000 vertices or triangles (kTooLarge), no
-/// number (kNotFinite), no rotation (kBadTransform), beyond 1 km (kOutOfBounds).
+/// Refused: more or less than the header says (kMalformed), over 1024 parts or 500,000 vertices or triangles
+/// (kTooLarge), no number (kNotFinite), no rotation (kBadTransform), beyond 1 km (kOutOfBounds).
 [[nodiscard]] Result<MeshLook> read_mesh(const BinaryFrame& frame);
 [[nodiscard]] Result<VoxelLook> read_voxels(const BinaryFrame& frame);
 /// For clients in C++, and for tests.

@@ -69,14 +69,16 @@ Result<MeshPart> read_part(ByteSpan& in) {
   part.number = *read_le<std::uint32_t>(in);
   const auto vertices = *read_le<std::uint32_t>(in);
   const auto triangles = *read_le<std::uint32_t>(in);
-  if (vertices > kMaxCorners || triangles > kMaxCorners) return refuse(Code::kTooLarge, "a mesh has at most 500,000 vertices and triangles");
+  if (vertices > kMaxCorners || triangles > kMaxCorners)
+    return refuse(Code::kTooLarge, "a mesh has at most 500,000 vertices and triangles");
   if (in.size() < (std::size_t{vertices} + triangles) * 12) return early();
   part.vertices.reserve(vertices);
   for (std::uint32_t i = 0; i < vertices; ++i) {
     Eigen::Vector3f p;
     for (int axis = 0; axis < 3; ++axis) p[axis] = *read_float(in);
     if (!p.allFinite()) return refuse(Code::kNotFinite, "a vertex is no number");
-    if (p.cwiseAbs().maxCoeff() > kMaxReach) return refuse(Code::kOutOfBounds, "a vertex is over 1 km from the frame's origin");
+    if (p.cwiseAbs().maxCoeff() > kMaxReach)
+      return refuse(Code::kOutOfBounds, "a vertex is over 1 km from the frame's origin");
     part.vertices.push_back(p);
   }
   part.triangles.reserve(triangles);
@@ -163,8 +165,10 @@ Result<VoxelLook> read_voxels(const BinaryFrame& frame) {
   look.resolution = std::bit_cast<double>(*read_le<std::uint64_t>(in));
   look.p_occupied = *read_float(in);
   look.p_free = *read_float(in);
-  if (!std::isfinite(look.resolution) || !(look.p_occupied > 0.5 && look.p_occupied < 1) || !(look.p_free > 0 && look.p_free < 0.5)) {
-    return refuse(Code::kNotFinite, "the probability of occupied lies above a half, that of free below, both within 0 and 1");
+  if (!std::isfinite(look.resolution) || !(look.p_occupied > 0.5 && look.p_occupied < 1) ||
+      !(look.p_free > 0 && look.p_free < 0.5)) {
+    return refuse(Code::kNotFinite,
+                  "the probability of occupied lies above a half, that of free below, both within 0 and 1");
   }
   auto pose = read_pose(in);
   if (!pose) return tl::unexpected(std::move(pose.error()));

@@ -33,8 +33,8 @@ struct Problem {
   }
 };
 
-/// The types of hmd.v1.toml. Each reads a JSON value strictly, within its bounds, and writes one; `read` answers whether
-/// the value is of the type and says in `problem` why not.
+/// The types of hmd.v1.toml. Each reads a JSON value strictly, within its bounds, and writes one; `read` answers
+/// whether the value is of the type and says in `problem` why not.
 namespace json_types {
 
 struct Bool {
@@ -50,7 +50,8 @@ struct Bool {
 struct I32 {
   using Value = std::int32_t;
   static bool read(const Json& json, Value& out, Problem& problem) {
-    if (!json.is_number_integer() || json < INT32_MIN || json > INT32_MAX) return problem.say(" must be a whole number of 32 bits");
+    if (!json.is_number_integer() || json < INT32_MIN || json > INT32_MAX)
+      return problem.say(" must be a whole number of 32 bits");
     out = json.get<Value>();
     return true;
   }
@@ -61,7 +62,8 @@ struct Count {
   using Value = std::int64_t;
   static constexpr Value kMost = (Value{1} << 53) - 1;  ///< what JavaScript counts to
   static bool read(const Json& json, Value& out, Problem& problem) {
-    if (!json.is_number_integer() || json < 0 || json > kMost) return problem.say(" must be a whole number from 0 to 2^53 - 1");
+    if (!json.is_number_integer() || json < 0 || json > kMost)
+      return problem.say(" must be a whole number from 0 to 2^53 - 1");
     out = json.get<Value>();
     return true;
   }

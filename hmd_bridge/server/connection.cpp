@@ -24,9 +24,10 @@ Response respond(const Request& request, http::status status, const char* type, 
   response.set("X-Content-Type-Options", "nosniff");
   response.set("Referrer-Policy", "no-referrer");
   response.set("X-Frame-Options", "DENY");
-  response.set("Content-Security-Policy",
-               "default-src 'self'; img-src 'self' data: blob:; worker-src 'self' blob:; style-src 'self' 'unsafe-inline'; "
-               "connect-src 'self' ws: wss:; frame-ancestors 'none'");
+  response.set(
+      "Content-Security-Policy",
+      "default-src 'self'; img-src 'self' data: blob:; worker-src 'self' blob:; style-src 'self' 'unsafe-inline'; "
+      "connect-src 'self' ws: wss:; frame-ancestors 'none'");
   response.keep_alive(request.keep_alive());
   response.body() = std::move(body);
   response.prepare_payload();
@@ -47,10 +48,12 @@ std::string field(const Request& request, http::field name) {
 }
 
 Response ticket(Server::Core& core, const Request& request, const Peer& peer) {
-  if (!core.gate.may_try(peer.address, core.now())) return error(request, http::status::too_many_requests, "too many tries; wait a moment");
+  if (!core.gate.may_try(peer.address, core.now()))
+    return error(request, http::status::too_many_requests, "too many tries; wait a moment");
   constexpr std::string_view kBearer = "Bearer ";
   const std::string authorization = field(request, http::field::authorization);
-  if (!authorization.starts_with(kBearer)) return error(request, http::status::unauthorized, "Authorization: Bearer TOKEN is needed");
+  if (!authorization.starts_with(kBearer))
+    return error(request, http::status::unauthorized, "Authorization: Bearer TOKEN is needed");
   const auto identity = core.tokens.find(authorization.substr(kBearer.size()));
   if (!identity) return error(request, http::status::service_unavailable, "the tokens are being written; try again");
   if (!*identity) return error(request, http::status::unauthorized, "no such token");
@@ -62,7 +65,8 @@ Response ticket(Server::Core& core, const Request& request, const Peer& peer) {
 Response answer(Server::Core& core, const Request& request, const Peer& peer) {
   const std::string target(request.target().data(), request.target().size());
   const std::string scheme = core.config.tls ? "https" : "http";
-  if (!origin_allowed(field(request, http::field::origin), scheme, field(request, http::field::host), core.config.origins)) {
+  if (!origin_allowed(field(request, http::field::origin), scheme, field(request, http::field::host),
+                      core.config.origins)) {
     return error(request, http::status::forbidden, "pages from there may not ask here");
   }
   if (target == "/api/ticket") {
@@ -72,10 +76,12 @@ Response answer(Server::Core& core, const Request& request, const Peer& peer) {
   if (request.method() != http::verb::get && request.method() != http::verb::head) {
     return error(request, http::status::method_not_allowed, "GET or HEAD");
   }
-  if (target == "/api/info") return respond_json(request, http::status::ok, {{"protocol", kProtocol}, {"ticket_needed", !peer.local}});
+  if (target == "/api/info")
+    return respond_json(request, http::status::ok, {{"protocol", kProtocol}, {"ticket_needed", !peer.local}});
   const StaticFiles::File* file = core.files.find(target);
   if (file == nullptr) return error(request, http::status::not_found, "there is nothing by this name");
-  return respond(request, http::status::ok, file->type.c_str(), request.method() == http::verb::head ? std::string() : *file->body);
+  return respond(request, http::status::ok, file->type.c_str(),
+                 request.method() == http::verb::head ? std::string() : *file->body);
 }
 
 /// Whether a header with a list of names has this one.
@@ -93,7 +99,8 @@ std::optional<Response> refusal(Server::Core& core, const Request& request, cons
     return error(request, http::status::bad_request, "Sec-WebSocket-Protocol must offer hmd.v1");
   }
   const std::string scheme = core.config.tls ? "https" : "http";
-  if (!origin_allowed(field(request, http::field::origin), scheme, field(request, http::field::host), core.config.origins)) {
+  if (!origin_allowed(field(request, http::field::origin), scheme, field(request, http::field::host),
+                      core.config.origins)) {
     return error(request, http::status::forbidden, "pages from there may not connect here; see bridge.origins");
   }
   if (!peer.local && !core.gate.may_try(peer.address, core.now())) {
@@ -111,9 +118,10 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
   void start() {
     expire();
     if constexpr (std::is_same_v<Stream, Secure>) {
-      stream_.async_handshake(boost::asio::ssl::stream_base::server, [self = this->shared_from_this()](beast::error_code e) {
-        if (!e) self->read();
-      });
+      stream_.async_handshake(boost::asio::ssl::stream_base::server,
+                              [self = this->shared_from_this()](beast::error_code e) {
+                                if (!e) self->read();
+                              });
     } else {
       read();
     }
@@ -173,14 +181,18 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
 
 }  // namespace
 
-void serve_tls(std::shared_ptr<Server::Core> core, tcp::socket socket, std::string address, std::shared_ptr<void> place) {
+void serve_tls(std::shared_ptr<Server::Core> core, tcp::socket socket, std::string address,
+               std::shared_ptr<void> place) {
   Secure stream(beast::tcp_stream(std::move(socket)), core->tls);
-  std::make_shared<Connection<Secure>>(std::move(core), std::move(stream), std::move(address), std::move(place))->start();
+  std::make_shared<Connection<Secure>>(std::move(core), std::move(stream), std::move(address), std::move(place))
+      ->start();
 }
 
-void serve_plain(std::shared_ptr<Server::Core> core, tcp::socket socket, std::string address, std::shared_ptr<void> place) {
+void serve_plain(std::shared_ptr<Server::Core> core, tcp::socket socket, std::string address,
+                 std::shared_ptr<void> place) {
   Plain stream(std::move(socket));
-  std::make_shared<Connection<Plain>>(std::move(core), std::move(stream), std::move(address), std::move(place))->start();
+  std::make_shared<Connection<Plain>>(std::move(core), std::move(stream), std::move(address), std::move(place))
+      ->start();
 }
 
 }  // namespace concord::hmd

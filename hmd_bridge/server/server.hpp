@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,8 @@ class Server {
  public:
   struct Config {
     std::string listen = "127.0.0.1";
-    std::uint16_t port = 0;  ///< 0: any that is free
+    std::uint16_t port = 0;            ///< 0: any that is free
+    std::optional<int> listener = {};  ///< descriptor of a listening TCP socket that is served beside its own
     bool tls = true;
     std::filesystem::path certificate, key;
     std::vector<std::string> origins;
@@ -34,7 +36,7 @@ class Server {
     double close_seconds = 5;                      ///< until one that does not close is cut
   };
 
-  /// @throws ConfigError for an address or a certificate that cannot be used. `now` is the stack's clock.
+  /// @throws ConfigError for an address, a listener or a certificate that cannot be used. `now` is the stack's clock.
   Server(boost::asio::io_context& io, Hub& hub, Gate& gate, TokenStore& tokens, const StaticFiles& files, Config config,
          std::function<std::int64_t()> now);
   ~Server();
@@ -42,6 +44,8 @@ class Server {
   Server& operator=(const Server&) = delete;
 
   [[nodiscard]] std::uint16_t port() const;
+  /// Where it is reached, for a browser; that of the given listener first.
+  [[nodiscard]] std::vector<std::string> addresses() const;
   /// Writes what the hub has for clients. Call it whenever the hub was given something.
   void pump();
   /// Accepts nobody any more, and says bye.

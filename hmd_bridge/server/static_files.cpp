@@ -9,11 +9,18 @@ namespace concord::hmd {
 namespace {
 
 std::string type_of(const std::filesystem::path& file) {
-  static const std::map<std::string, const char*> kTypes = {
-      {".html", "text/html; charset=utf-8"}, {".js", "text/javascript; charset=utf-8"}, {".css", "text/css; charset=utf-8"},
-      {".json", "application/json"},         {".svg", "image/svg+xml"},                 {".png", "image/png"},
-      {".ico", "image/x-icon"},              {".wasm", "application/wasm"},             {".glb", "model/gltf-binary"},
-      {".gltf", "model/gltf+json"},          {".map", "application/json"},              {".webmanifest", "application/manifest+json"}};
+  static const std::map<std::string, const char*> kTypes = {{".html", "text/html; charset=utf-8"},
+                                                            {".js", "text/javascript; charset=utf-8"},
+                                                            {".css", "text/css; charset=utf-8"},
+                                                            {".json", "application/json"},
+                                                            {".svg", "image/svg+xml"},
+                                                            {".png", "image/png"},
+                                                            {".ico", "image/x-icon"},
+                                                            {".wasm", "application/wasm"},
+                                                            {".glb", "model/gltf-binary"},
+                                                            {".gltf", "model/gltf+json"},
+                                                            {".map", "application/json"},
+                                                            {".webmanifest", "application/manifest+json"}};
   const auto it = kTypes.find(file.extension().string());
   return it != kTypes.end() ? it->second : "application/octet-stream";
 }
@@ -34,12 +41,14 @@ Result<void> StaticFiles::add(const std::filesystem::path& folder, const std::st
   for (; !error && it != end; it.increment(error)) {
     if (!it->is_regular_file(error)) continue;
     const fs::path path = fs::relative(it->path(), folder, error);
-    if (error || !std::all_of(path.begin(), path.end(), [](const fs::path& part) { return is_plain(part.string()); })) continue;
+    if (error || !std::all_of(path.begin(), path.end(), [](const fs::path& part) { return is_plain(part.string()); }))
+      continue;
     auto bytes = read_whole_file(it->path(), kMaxBytes - bytes_);
     if (!bytes) return tl::unexpected(std::move(bytes.error()));
     bytes_ += bytes->size();
     if (files_.size() >= kMaxFiles) return refuse(Code::kTooLarge, folder.string() + " holds too many files");
-    files_[prefix + path.generic_string()] = {type_of(path), std::make_shared<const std::string>(bytes->begin(), bytes->end())};
+    files_[prefix + path.generic_string()] = {type_of(path),
+                                              std::make_shared<const std::string>(bytes->begin(), bytes->end())};
   }
   if (error) return refuse(Code::kIo, folder.string() + ": " + error.message());
   return {};

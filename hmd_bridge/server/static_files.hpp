@@ -10,8 +10,8 @@
 
 namespace concord::hmd {
 
-/// The files that are served, read whole at the start: a request can name one of these and nothing else, so no path ever
-/// reaches the file system.
+/// The files that are served, read whole at the start: a request can name one of these and nothing else, so no path
+/// ever reaches the file system.
 class StaticFiles {
  public:
   static constexpr std::size_t kMaxBytes = 256 << 20;
@@ -23,7 +23,8 @@ class StaticFiles {
   };
 
   /// Adds all files below `folder` as `prefix` and their path there; names that are hidden or hold other letters than
-  /// A-Z a-z 0-9 . _ - are left out. Refused: no such folder (kNotFound), over the limits (kTooLarge), unreadable (kIo).
+  /// A-Z a-z 0-9 . _ - are left out. Refused: no such folder (kNotFound), over the limits (kTooLarge), unreadable
+  /// (kIo).
   [[nodiscard]] Result<void> add(const std::filesystem::path& folder, const std::string& prefix);
   void add(const std::string& path, File file) { files_[path] = std::move(file); }
 

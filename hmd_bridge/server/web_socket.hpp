@@ -86,7 +86,8 @@ class WebSocket final : public Socket, public std::enable_shared_from_this<WebSo
     writing_ = std::move(next);
     const auto* text = std::get_if<SharedText>(&*writing_);
     ws_.binary(text == nullptr);
-    const auto buffer = text != nullptr ? boost::asio::buffer(**text) : boost::asio::buffer(*std::get<FramePointer>(*writing_));
+    const auto buffer =
+        text != nullptr ? boost::asio::buffer(**text) : boost::asio::buffer(*std::get<FramePointer>(*writing_));
     ws_.async_write(buffer, [self = this->shared_from_this()](beast::error_code error, std::size_t) {
       self->writing_.reset();
       if (error) return self->leave();

@@ -14,9 +14,12 @@ Refusal refusal(Code code, const std::string& message) { return {code, message.s
 
 /// The name and the role of a request that is a binary frame.
 const RequestInfo* upload_info(FrameKind kind) {
-  const char* name = kind == FrameKind::kMesh ? UploadMeshAnswer::kName : kind == FrameKind::kVoxels ? UploadVoxelsAnswer::kName : "";
+  const char* name = kind == FrameKind::kMesh     ? UploadMeshAnswer::kName
+                     : kind == FrameKind::kVoxels ? UploadVoxelsAnswer::kName
+                                                  : "";
   const auto& infos = request_infos();
-  const auto it = std::find_if(infos.begin(), infos.end(), [&](const RequestInfo& info) { return std::string_view(info.name) == name; });
+  const auto it = std::find_if(infos.begin(), infos.end(),
+                               [&](const RequestInfo& info) { return std::string_view(info.name) == name; });
   return it != infos.end() ? &*it : nullptr;
 }
 
@@ -30,7 +33,8 @@ Result<Hub::Connection> Hub::open(const Peer& peer, std::int64_t now) {
   const auto same = static_cast<std::size_t>(std::count_if(
       links_.begin(), links_.end(), [&](const auto& entry) { return entry.second.peer.address == peer.address; }));
   if (links_.size() >= config_.max_clients) return refuse_busy("there are as many clients as may be");
-  if (!peer.local && same >= config_.max_clients_per_address) return refuse_busy("there are as many clients from this address as may be");
+  if (!peer.local && same >= config_.max_clients_per_address)
+    return refuse_busy("there are as many clients from this address as may be");
   const SessionLimits& limits = config_.limits;
   Link link{.peer = peer,
             .opened = now,
@@ -73,96 +77,8 @@ void Hub::text(Connection connection, std::string_view text, std::int64_t now) {
   take_notice(*session, std::get<NoticeBody>(*read));
 }
 
-void Hub::greet(Connection connection, Link& link, const ClientRequest& request, std::int64_t now) {
-  const auto& hello = std::get<HelloRequest>(request.body);
-  const auto no = [&](Code code, const char* message) {
-    handlers_.audit("refused from=" + link.peer.address + " request=hello outcome=" + text_of(code));
-    link.first.push_back(share(error_text(request.id, refusal(code, message))));
-    close(connection, link, 1008, code, message);
-  };
-  if (hello.version != kProtocol) return no(Code::kVersion, "this server speaks hmd.v1; load the page again");
-  Identity identity{hello.name.value_or("local"), config_.local_role};
-  if (hello.ticket) {
-    const std::optional<Identity> redeemed = gate_.redeem(*hello.ticket, now);
-    if (!redeemed) return no(Code::kBadToken, "the ticket was used, is over 10 s old, or never was; ask for another");
-    identity = *redeemed;
-  } else if (!link.peer.local) {
-    return no(Code::kBadToken, "from another machine a ticket is needed: POST /api/ticket with a token");
-  }
-  if (hello.agent.has_value() != hello.frame_id.has_value()) return no(Code::kBadFrame, "agent and frame_id are given together, or neither");
-  if (hello.agent && !may(identity.role, Role::kEdit)) return no(Code::kDenied, "who only looks cannot be an agent");
-  const bool taken = hello.agent && std::any_of(sessions_.begin(), sessions_.end(), [&](const auto& entry) {
-    const Session& other = entry.second;
-    return other.connection && other.agent == *hello.agent && other.identity.name != identity.name;
-  });
-  if (taken) return no(Code::kDenied, "somebody else is this agent now; choose another name for it");
-  if (Session* old = resumable(hello, identity)) return begin(connection, link, *old, hello, request.id, true, now);
-  ++last_session_;
-  auto [it, fresh] = sessions_.try_emplace(last_session_, last_session_, gate_.new_secret(), identity, config_.limits);
-  begin(connection, link, it->second, hello, request.id, false, now);
-}
-
-Session* Hub::resumable(const HelloRequest& hello, const Identity& identity) {
-  if (!hello.resume) return nullptr;
-  for (auto& [number, session] : sessions_) {
-    if (session.secret != hello.resume->session || session.identity.name != identity.name) continue;
-    if (session.identity.role != identity.role || session.agent != hello.agent.value_or("")) return nullptr;
-    return &session;
-  }
-  return nullptr;
-}
-
-void Hub::begin(Connection connection, Link& link, Session& session, const HelloRequest& hello, std::int64_t id, bool resumed,
-                std::int64_t now) {
-  if (session.connection) {  // it lost that one and we have not noticed yet
-    const auto old = links_.find(*session.connection);
-    if (old != links_.end()) {
-      old->second.session.reset();
-      old->second.closing = Closing{1000, "taken up by another connection"};
-      ready_.insert(old->first);
-    }
-    park(session, now);
-  }
-  session.outbox = Outbox();
-  session.kept.reset();
-  const auto view = session.views.find(kMapStream);
-  const ShownLayer* map = layers_.find(kMapStream);
-  if (resumed && map != nullptr && hello.resume->epoch == map->epoch && view != session.views.end()) {
-    session.kept = Session::Kept{view->second.region(), hello.resume->revision};
-  }
-  session.views.clear();
-  session.told_complete.clear();
-  session.path_frames.clear();
-  session.told_paths.clear();
-  session.connection = connection;
-  session.address = link.peer.address;
-  session.device = hello.device;
-  session.agent = hello.agent.value_or("");
-  session.frame_id = hello.frame_id.value_or("");
-  session.tracking_lost = false;
-  session.highest_id = std::max(session.highest_id, id);
-  link.session = session.person;
-
-  const SessionLimits& limits = config_.limits;
-  const HelloAnswer answer{session.secret,
-                           session.person,
-                           session.identity.role,
-                           session.identity.name,
-                           resumed,
-                           config_.resolution,
-                           map != nullptr ? map->epoch : "",
-                           now,
-                           {static_cast<std::int64_t>(kMaxTextBytes), static_cast<std::int64_t>(kMaxBinaryBytes),
-                            limits.requests_per_second, limits.upload_bytes_per_second,
-                            static_cast<std::int64_t>(limits.burst_requests), static_cast<std::int64_t>(limits.burst_upload_bytes), 30.0}};
-  session.outbox.lossless(share(answer_text(id, answer)));
-  for (const auto& [key, text] : state_) session.outbox.newest(key, text);
-  audit(session, resumed ? "hello(resumed)" : "hello", id, "OK");
-  ready(session);
-  handlers_.on_begin(session, resumed);
-}
-
-bool Hub::is_new(Connection connection, Link& link, Session& session, std::int64_t id, const std::string& name, std::int64_t now) {
+bool Hub::is_new(Connection connection, Link& link, Session& session, std::int64_t id, const std::string& name,
+                 std::int64_t now) {
   if (const SharedText said = session.answered.find(id)) {
     session.outbox.lossless(said);
     ready(session);
@@ -185,12 +101,14 @@ void Hub::take_request(Connection connection, Session& session, const ClientRequ
   session.highest_id = request.id;
   if (std::holds_alternative<HelloRequest>(request.body)) return no(Code::kBadRequest, "hello was said already");
   if (!may(session.identity.role, info.role)) {
-    return no(Code::kDenied, "needs the role " + std::string(text_of(info.role)) + ", and yours is " + text_of(session.identity.role));
+    return no(Code::kDenied,
+              "needs the role " + std::string(text_of(info.role)) + ", and yours is " + text_of(session.identity.role));
   }
   if (session.pending.size() >= kMaxPending) return no(Code::kBusy, "64 requests wait for their answers");
   session.pending.emplace(request.id, info.name);
   const Ask ask{session.person, request.id};
-  if (const auto* clock = std::get_if<ClockRequest>(&request.body)) return answer(ask, ClockAnswer{clock->t0, now, now});
+  if (const auto* clock = std::get_if<ClockRequest>(&request.body))
+    return answer(ask, ClockAnswer{clock->t0, now, now});
   handlers_.on_request(ask, request.body);
 }
 
@@ -200,7 +118,8 @@ void Hub::binary(Connection connection, ByteSpan bytes, std::int64_t now) {
   if (it == links_.end() || it->second.closing) return;
   Link& link = it->second;
   Session* session = link.session ? find(*link.session) : nullptr;
-  if (session == nullptr) return close(connection, link, 1002, Code::kBadMessage, "the first frame must be the request hello");
+  if (session == nullptr)
+    return close(connection, link, 1002, Code::kBadMessage, "the first frame must be the request hello");
   const auto frame = read_frame(bytes);
   if (!frame) {
     // The id is where it is, whatever else is wrong.
@@ -214,9 +133,11 @@ void Hub::binary(Connection connection, ByteSpan bytes, std::int64_t now) {
   const auto no = [&](Code code, const std::string& message) {
     refuse_now(connection, link, *session, id, info != nullptr ? info->name : "frame", code, message, now);
   };
-  if (info == nullptr || id == 0) return no(Code::kBadMessage, "clients send frames of kind 65 and 66, under a request's id");
+  if (info == nullptr || id == 0)
+    return no(Code::kBadMessage, "clients send frames of kind 65 and 66, under a request's id");
   if (!is_new(connection, link, *session, id, info->name, now)) return;
-  if (!session->uploads.take(static_cast<double>(bytes.size()), now)) return no(Code::kRate, "more bytes than allowed; see limits");
+  if (!session->uploads.take(static_cast<double>(bytes.size()), now))
+    return no(Code::kRate, "more bytes than allowed; see limits");
   session->highest_id = id;
   if (!may(session->identity.role, info->role)) return no(Code::kDenied, "who only looks cannot map");
   if (session->pending.size() >= kMaxPending) return no(Code::kBusy, "64 requests wait for their answers");
@@ -238,12 +159,13 @@ void Hub::take_notice(Session& session, const NoticeBody& notice) {
     if (const auto T = make_transform({p[0], p[1], p[2]}, {q[0], q[1], q[2], q[3]})) session.T_own_head = *T;
   }
   session.pointer.reset();
-  if (tracking.pointer) session.pointer = Eigen::Vector3d((*tracking.pointer)[0], (*tracking.pointer)[1], (*tracking.pointer)[2]);
+  if (tracking.pointer)
+    session.pointer = Eigen::Vector3d((*tracking.pointer)[0], (*tracking.pointer)[1], (*tracking.pointer)[2]);
   handlers_.on_tracking(session);
 }
 
-void Hub::refuse_now(Connection connection, Link& link, Session& session, std::int64_t id, const std::string& name, Code code,
-                     const std::string& message, std::int64_t now) {
+void Hub::refuse_now(Connection connection, Link& link, Session& session, std::int64_t id, const std::string& name,
+                     Code code, const std::string& message, std::int64_t now) {
   session.outbox.lossless(share(error_text(id, refusal(code, message))));
   audit(session, name, id, text_of(code));
   ready(session);

@@ -39,9 +39,9 @@ class Hub {
     std::size_t max_clients_per_address = 16;
     double resolution = 0.05;
   };
-  static constexpr std::int64_t kHelloWithin = 5'000'000;    ///< microseconds
-  static constexpr std::int64_t kParked = 120'000'000;       ///< a session outlives its connection by so long
-  static constexpr std::size_t kMaxPending = 64;             ///< requests of one client that wait
+  static constexpr std::int64_t kHelloWithin = 5'000'000;  ///< microseconds
+  static constexpr std::int64_t kParked = 120'000'000;     ///< a session outlives its connection by so long
+  static constexpr std::size_t kMaxPending = 64;           ///< requests of one client that wait
   static constexpr std::int64_t kMaxParked = 64;
 
   /// What becomes of what clients say; called from within text() and binary().
@@ -116,26 +116,26 @@ class Hub {
     Peer peer;
     std::int64_t opened = 0;
     std::optional<std::int64_t> session;
-    std::deque<SharedText> first;  ///< before everything else
+    std::deque<SharedText> first;    ///< before everything else
     std::deque<FramePointer> asked;  ///< frames that requests asked for
     std::size_t asked_bytes = 0;
-    SharedText last;               ///< the bye
+    SharedText last;  ///< the bye
     std::optional<Closing> closing;
     TokenBucket refusals;
   };
 
   void greet(Connection connection, Link& link, const ClientRequest& request, std::int64_t now);
   [[nodiscard]] static tl::unexpected<Error> refuse_busy(const char* why);
-  void begin(Connection connection, Link& link, Session& session, const HelloRequest& hello, std::int64_t id, bool resumed,
-             std::int64_t now);
+  void begin(Connection connection, Link& link, Session& session, const HelloRequest& hello, std::int64_t id,
+             bool resumed, std::int64_t now);
   [[nodiscard]] Session* resumable(const HelloRequest& hello, const Identity& identity);
   void take_request(Connection connection, Session& session, const ClientRequest& request, std::int64_t now);
   /// Whether the request is new; one that was asked before is answered from what was said.
-  [[nodiscard]] bool is_new(Connection connection, Link& link, Session& session, std::int64_t id, const std::string& name,
-                            std::int64_t now);
+  [[nodiscard]] bool is_new(Connection connection, Link& link, Session& session, std::int64_t id,
+                            const std::string& name, std::int64_t now);
   void take_notice(Session& session, const NoticeBody& notice);
-  void refuse_now(Connection connection, Link& link, Session& session, std::int64_t id, const std::string& name, Code code,
-                  const std::string& message, std::int64_t now);
+  void refuse_now(Connection connection, Link& link, Session& session, std::int64_t id, const std::string& name,
+                  Code code, const std::string& message, std::int64_t now);
   void answer_text_to(const Ask& ask, SharedText text, const char* outcome);
   void count_refusal(Connection connection, Link& link, std::int64_t now);
   void close(Connection connection, Link& link, std::uint16_t code, Code why, const std::string& message);

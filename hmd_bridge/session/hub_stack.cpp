@@ -230,6 +230,7 @@ void Hub::sweep() {
     if (!session.connection) return;  // it may come back, with what it had
   }
   for (auto& [stream, layer] : layers_.all()) {
+    if (!layer.changed.empty()) continue;  // views have not been told: they may lack blocks that are empty meanwhile
     for (const BlockKey& key : layer.store.emptied_before(layers_.revision())) {
       const std::int64_t revision = layer.store.revision(key);
       const bool all_know = std::all_of(sessions_.begin(), sessions_.end(), [&](const auto& entry) {

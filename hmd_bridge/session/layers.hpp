@@ -9,8 +9,8 @@
 
 namespace concord::hmd {
 
-inline constexpr std::uint32_t kMapStream = 0, kConflictStream = 1, kGridOccupiedStream = 2, kGridFreeStream = 3, kLabelStream = 4,
-                               kFirstAgentStream = 16;
+inline constexpr std::uint32_t kMapStream = 0, kConflictStream = 1, kGridOccupiedStream = 2, kGridFreeStream = 3,
+                               kLabelStream = 4, kFirstAgentStream = 16;
 
 /// One layer that clients look at, and the revisions it is told with.
 struct ShownLayer {
@@ -26,7 +26,9 @@ struct ShownLayer {
 /// All layers, and the one counter that their revisions are taken from.
 class Layers {
  public:
-  ShownLayer& open(std::uint32_t stream, int levels) { return layers_.try_emplace(stream, stream, levels).first->second; }
+  ShownLayer& open(std::uint32_t stream, int levels) {
+    return layers_.try_emplace(stream, stream, levels).first->second;
+  }
   void close(std::uint32_t stream) { layers_.erase(stream); }
   [[nodiscard]] ShownLayer* find(std::uint32_t stream) {
     const auto it = layers_.find(stream);

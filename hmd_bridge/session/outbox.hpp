@@ -10,8 +10,8 @@ namespace concord::hmd {
 
 using SharedText = std::shared_ptr<const std::string>;
 
-/// What waits for one client, beside blocks: texts that must all arrive, in order, and texts of which only the newest of
-/// each key matters. One is taken at a time, when the connection can take one.
+/// What waits for one client, beside blocks: texts that must all arrive, in order, and texts of which only the newest
+/// of each key matters. One is taken at a time, when the connection can take one.
 class Outbox {
  public:
   static constexpr std::size_t kMostBytes = 4 << 20;  ///< of lossless texts

@@ -42,7 +42,8 @@ std::array<std::uint8_t, 64> halved(const ChunkBits& chunk) {
   };
   for (int z = 0; z < 8; ++z) {
     for (int y = 0; y < 8; ++y) {
-      const std::uint32_t four = row(2 * y, 2 * z) | row(2 * y + 1, 2 * z) | row(2 * y, 2 * z + 1) | row(2 * y + 1, 2 * z + 1);
+      const std::uint32_t four =
+          row(2 * y, 2 * z) | row(2 * y + 1, 2 * z) | row(2 * y, 2 * z + 1) | row(2 * y + 1, 2 * z + 1);
       rows[static_cast<std::size_t>(y + 8 * z)] = halve(four);
     }
   }
@@ -86,7 +87,8 @@ bool BlockStore::replace(int level, const VoxelIndex& chunk, const ChunkBits& bi
   return true;
 }
 
-void BlockStore::set(BrickIndex brick, const VoxelMask& occupied, std::int64_t revision, std::vector<BlockKey>& changed) {
+void BlockStore::set(BrickIndex brick, const VoxelMask& occupied, std::int64_t revision,
+                     std::vector<BlockKey>& changed) {
   const VoxelIndex chunk{brick.x >> 1, brick.y >> 1, brick.z >> 1};
   const ChunkBits* held = find(0, chunk);
   ChunkBits bits = held != nullptr ? *held : kEmpty;

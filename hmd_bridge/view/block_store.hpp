@@ -63,10 +63,10 @@ class BlockStore {
  private:
   struct Block {
     std::int64_t revision = 0;
-    std::uint64_t filled = 0;               ///< bit of each chunk with any cell
+    std::uint64_t filled = 0;                ///< bit of each chunk with any cell
     std::array<std::int64_t, 64> changed{};  ///< by chunk
-    std::vector<ChunkBits> chunks;          ///< packed, by bit of `filled`
-    FramePointer whole, change;             ///< the latest made; null when out of date
+    std::vector<ChunkBits> chunks;           ///< packed, by bit of `filled`
+    FramePointer whole, change;              ///< the latest made; null when out of date
     std::int64_t change_since = 0;
   };
   /// A chunk's place: its block and its number there.

@@ -45,6 +45,8 @@ std::int64_t ClientView::held(const BlockKey& key) const {
 
 void ClientView::changed(const BlockStore& store, const BlockKey& key) {
   if (!hmd::in_view(region_, key)) return;
+  // A block may have been sent, as it is now, between the change and this telling of it.
+  if (held(key) != 0 && held(key) >= store.revision(key)) return;
   const std::pair<double, BlockKey> entry{distance_to(region_, key), key};
   if (lacking_.contains(entry)) {
     ++skipped_;

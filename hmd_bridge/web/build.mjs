@@ -47,7 +47,7 @@ if (tests) {
     format: "cjs",
     outExtension: { ".js": ".cjs" },
     platform: "node",
-    target: "node20",
+    target: "node18",
     external: ["playwright-core", "ws"],
     nodePaths: [join(here, "node_modules")],
     sourcemap: "inline",

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "bus/pack.hpp"
+
 namespace concord {
 namespace {
 
@@ -58,19 +60,12 @@ ListSender<T>::ListSender(Bus& bus, Counters& counters, const std::string& list,
 template <class T>
 void ListSender<T>::set(const std::vector<T>& items) {
   assert(items.size() <= kMostItems<T>);
-  std::vector<Part> parts;
   ContentHash hash;
-  std::size_t size = kPartBytes;
-  for (const T& item : items) {
+  std::vector<Part> parts = pack(items, [&](const T& item) {
     const Bytes bytes = on_the_wire(item);
     hash.add(bytes);
-    if (size + bytes.size() > kPartBytes || parts.back().size() >= kMostInPart) {
-      parts.emplace_back();
-      size = 0;
-    }
-    parts.back().push_back(item);
-    size += bytes.size();
-  }
+    return bytes.size();
+  });
   if (begun_ && hash.value() == content_) return;
   begun_ = true;
   content_ = hash.value();

@@ -15,9 +15,6 @@ namespace {
 
 using wire::bad;
 
-/// Of a stamp: far from where sums of times would overflow.
-constexpr std::int64_t kLatestTime = std::int64_t{1} << 62;
-
 constexpr WireField kAsker[] = {fixed(8), text(wire::kIdLength), text(wire::kIdLength)};  ///< utime, id, author
 constexpr WireField kFrame[] = {text(wire::kNameLength), text(wire::kNameLength)};        ///< frame_agent, frame_id
 
@@ -26,8 +23,6 @@ template <class Lcm>
 auto& id_of(Lcm& message) {
   if constexpr (requires { message.request_id; }) {
     return message.request_id;
-  } else if constexpr (requires { message.lease_id; }) {
-    return message.lease_id;
   } else {
     return message.edit_id;
   }
@@ -55,14 +50,11 @@ wire::Filling<Value> asked_by(const Lcm& in) {
 /// The message, once it is clear who asks.
 template <class Lcm>
 Decoded<Lcm> read(std::span<const std::uint8_t> bytes, std::span<const WireField> layout) {
-  auto in = wire::from_bytes<Lcm>(bytes, layout);
-  if (!in) return bad(in.error());
-  if (!wire::is_request_id(id_of(*in))) return wire::bad_id();
-  if (!wire::is_printable(in->author)) return wire::bad_author(id_of(*in));
-  if (in->utime < 0 || in->utime > kLatestTime) {
-    return bad(Code::kBadRequest, "utime is no time; it must be microseconds since 1970", id_of(*in));
-  }
-  return std::move(*in);
+  auto in = wire::request_from_bytes<Lcm>(bytes, layout);
+  if (!in) return in;
+  if (const auto author = wire::author_of(in->author); !author) return bad(author.error(), id_of(*in));
+  if (const auto utime = wire::time_of(in->utime); !utime) return bad(utime.error(), id_of(*in));
+  return in;
 }
 
 template <class Lcm>
@@ -135,14 +127,15 @@ Result<bool> hold_of(std::int8_t op) {
   return op == lease_request_t::HOLD;
 }
 
-Result<std::string> edit_id_of(const undo_t& in) {
-  if (wire::is_request_id(in.edit_id)) return in.edit_id;
-  return refuse(Code::kBadRequest, "edit_id must be 1 to 80 printable characters");
+Result<std::string> lease_of(const std::string& lease) {
+  if (is_request_id(lease)) return lease;
+  return refuse(Code::kBadName, std::string("a lease's id must be ") + kIdRule);
 }
 
-Result<std::string> agent_of(const std::string& agent) {
-  if (is_name(agent)) return agent;
-  return refuse(Code::kBadName, wire::kBadAgent);
+Result<std::string> edit_id_of(const undo_t& in) {
+  // Not the rule for new ids: whatever an edit was called, it can be taken back.
+  if (is_kept_id(in.edit_id)) return in.edit_id;
+  return refuse(Code::kBadRequest, std::string("edit_id must be ") + kKeptIdRule);
 }
 
 Result<std::string> frame_id_of(const std::string& frame_id) {
@@ -227,7 +220,9 @@ Decoded<ZoneRequest> decode<ZoneRequest>(std::span<const std::uint8_t> bytes) {
   if (!in) return tl::unexpected(in.error());
   auto out = asked_by<ZoneRequest>(*in);
   out.take(&ZoneRequest::op, zone_op(in->op));
-  out.take(&ZoneRequest::name, wire::title_of(in->name));
+  // Whatever a zone was called, it can be changed and deleted: the rule for names is for new ones.
+  const bool is_new = in->op == zone_request_t::ADD;
+  out.take(&ZoneRequest::name, is_new ? wire::title_of(in->name) : wire::kept_title_of(in->name));
   if (in->op != zone_request_t::DELETE) {
     out.take(&ZoneRequest::kind, wire::zone_kind(in->kind));
     out.take(&ZoneRequest::volume, wire::volume_from_wire(in->volume));
@@ -239,6 +234,7 @@ Decoded<ZoneRequest> decode<ZoneRequest>(std::span<const std::uint8_t> bytes) {
 
 Bytes encode(const LeaseRequest& value) {
   auto out = asked_by<lease_request_t>(value, value.utime);
+  out.lease_id = value.lease;
   out.op = value.hold ? lease_request_t::HOLD : lease_request_t::FREE;
   out.volume = wire::to_wire(value.volume);
   put_frame(value.frame, out);
@@ -247,10 +243,12 @@ Bytes encode(const LeaseRequest& value) {
 
 template <>
 Decoded<LeaseRequest> decode<LeaseRequest>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {record(kAsker), fixed(1), wire::kShape, record(kFrame)};
+  static constexpr WireField kLayout[] = {record(kAsker), text(wire::kIdLength), fixed(1), wire::kShape,
+                                          record(kFrame)};
   const auto in = read<lease_request_t>(bytes, kLayout);
   if (!in) return tl::unexpected(in.error());
   auto out = asked_by<LeaseRequest>(*in);
+  out.take(&LeaseRequest::lease, lease_of(in->lease_id));
   out.take(&LeaseRequest::hold, hold_of(in->op));
   if (in->op != lease_request_t::FREE) out.take(&LeaseRequest::volume, wire::volume_from_wire(in->volume));
   out.take(&LeaseRequest::frame, frame_of(*in));
@@ -270,7 +268,7 @@ Decoded<WeightRequest> decode<WeightRequest>(std::span<const std::uint8_t> bytes
   const auto in = read<weight_request_t>(bytes, kLayout);
   if (!in) return tl::unexpected(in.error());
   auto out = asked_by<WeightRequest>(*in);
-  out.take(&WeightRequest::agent, agent_of(in->agent));
+  out.take(&WeightRequest::agent, wire::agent_of(in->agent));
   out.take(&WeightRequest::weight, weight_of(in->weight));
   return out.done();
 }
@@ -290,7 +288,7 @@ Decoded<LocaliseRequest> decode<LocaliseRequest>(std::span<const std::uint8_t> b
   const auto in = read<localise_request_t>(bytes, kLayout);
   if (!in) return tl::unexpected(in.error());
   auto out = asked_by<LocaliseRequest>(*in);
-  out.take(&LocaliseRequest::agent, agent_of(in->agent));
+  out.take(&LocaliseRequest::agent, wire::agent_of(in->agent));
   out.take(&LocaliseRequest::T_frame_base, wire::from_wire(in->T_frame_base));
   out.take(&LocaliseRequest::frame, frame_of(*in));
   return out.done();
@@ -311,7 +309,7 @@ Decoded<TransformRequest> decode<TransformRequest>(std::span<const std::uint8_t>
   const auto in = read<set_transform_t>(bytes, kLayout);
   if (!in) return tl::unexpected(in.error());
   auto out = asked_by<TransformRequest>(*in);
-  out.take(&TransformRequest::agent, agent_of(in->agent));
+  out.take(&TransformRequest::agent, wire::agent_of(in->agent));
   out.take(&TransformRequest::frame_id, frame_id_of(in->frame_id));
   out.take(&TransformRequest::T_map_agent, wire::from_wire(in->T_map_agent));
   return out.done();

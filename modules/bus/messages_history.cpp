@@ -5,6 +5,7 @@
 #include <concord/history_request_t.hpp>
 #include <concord/history_t.hpp>
 
+#include "bus/pack.hpp"
 #include "bus/translate.hpp"
 
 namespace concord {
@@ -16,31 +17,19 @@ using Kind = Operation::Kind;
 constexpr std::int64_t kMaxParts = 10'000;
 constexpr std::int64_t kMaxClaims = 1024;
 constexpr int kMostOperations = 10'000;
-constexpr int kMostRegions = 1'000;
 /// Of one tile of the map.
 constexpr std::int32_t kMaxVoxelsOfRegion = 32 * 32 * 32;
 
-constexpr std::pair<std::int8_t, Kind> kKinds[] = {
-    {operation_t::ADD, Kind::kAdd},
-    {operation_t::DELETE, Kind::kDelete},
-    {operation_t::MOVE, Kind::kMove},
-    {operation_t::UNDO, Kind::kUndo},
-    {operation_t::REDO, Kind::kRedo},
-    {operation_t::ZONE_ADD, Kind::kZoneAdd},
-    {operation_t::ZONE_CHANGE, Kind::kZoneChange},
-    {operation_t::ZONE_DELETE, Kind::kZoneDelete},
-    {operation_t::TRANSFORM, Kind::kTransform},
-    {operation_t::WEIGHT, Kind::kWeight},
-};
-
-std::int8_t to_wire(Kind kind) {
-  const auto known = std::ranges::find(kKinds, kind, &std::pair<std::int8_t, Kind>::second);
-  return known->first;
-}
+constexpr std::int8_t to_wire(Kind kind) { return static_cast<std::int8_t>(static_cast<int>(kind) + 1); }
+static_assert(to_wire(Kind::kAdd) == operation_t::ADD && to_wire(Kind::kDelete) == operation_t::DELETE &&
+              to_wire(Kind::kMove) == operation_t::MOVE && to_wire(Kind::kUndo) == operation_t::UNDO &&
+              to_wire(Kind::kRedo) == operation_t::REDO && to_wire(Kind::kZoneAdd) == operation_t::ZONE_ADD &&
+              to_wire(Kind::kZoneChange) == operation_t::ZONE_CHANGE &&
+              to_wire(Kind::kZoneDelete) == operation_t::ZONE_DELETE &&
+              to_wire(Kind::kTransform) == operation_t::TRANSFORM && to_wire(Kind::kWeight) == operation_t::WEIGHT);
 
 Result<Kind> kind_of(std::int8_t kind) {
-  const auto known = std::ranges::find(kKinds, kind, &std::pair<std::int8_t, Kind>::first);
-  if (known != std::end(kKinds)) return known->second;
+  if (kind >= 1 && kind <= static_cast<std::int8_t>(kOperationNames.size())) return static_cast<Kind>(kind - 1);
   return refuse(Code::kBadRequest, "kind is none of operation_t's");
 }
 
@@ -49,9 +38,10 @@ Result<std::optional<Kind>> any_kind_of(std::int8_t kind) {
   return kind_of(kind).map([](Kind known) { return std::optional<Kind>(known); });
 }
 
-Result<std::string> printable(const std::string& text, const char* what) {
-  if (wire::is_printable(text)) return text;
-  return refuse(Code::kBadRequest, std::string(what) + " must be at most 80 printable characters");
+/// Also of what is asked for: it may have been made when more was taken for a name than is now.
+Result<std::string> line(const std::string& text, const char* what) {
+  if (is_line(text)) return text;
+  return refuse(Code::kBadRequest, std::string(what) + " must be one line of at most 80 bytes");
 }
 
 Result<int> most_of(std::int32_t most, int highest) {
@@ -94,11 +84,11 @@ operation_t to_wire(const Operation& operation) {
 Decoded<Operation> from_wire(const operation_t& in) {
   wire::Filling<Operation> out({}, {});
   out.take(&Operation::revision, wire::not_negative(in.revision, "revision"));
-  out.take(&Operation::id, printable(in.id, "id"));
-  out.take(&Operation::author, printable(in.author, "author"));
+  out.take(&Operation::id, line(in.id, "id"));
+  out.take(&Operation::author, line(in.author, "author"));
   out.take(&Operation::utime, Result<std::int64_t>(in.utime));
   out.take(&Operation::kind, kind_of(in.kind));
-  out.take(&Operation::subject, printable(in.subject, "subject"));
+  out.take(&Operation::subject, line(in.subject, "subject"));
   out.take(&Operation::count, wire::not_negative(in.count, "count"));
   out.take(&Operation::active, Result<bool>(in.active != 0));
   out.require(check_bounds(in));
@@ -127,7 +117,7 @@ Decoded<ConflictRegion> from_wire(const conflict_region_t& in) {
     return bad(Code::kMalformed, "a tile of the map has fewer voxels than this region");
   ConflictRegion out{voxel(in.min), voxel(in.max), in.voxels, {}};
   for (const claim_t& claim : in.claims) {
-    if (!is_name(claim.agent)) return bad(Code::kBadName, wire::kBadAgent);
+    if (const auto agent = wire::agent_of(claim.agent); !agent) return bad(agent.error());
     const auto within = [&](std::int32_t voxels) { return voxels >= 0 && voxels <= in.voxels; };
     if (!within(claim.occupied) || !within(claim.free)) {
       return bad(Code::kMalformed, "an agent claims more voxels than there are");
@@ -165,23 +155,15 @@ Decoded<Part> read_part(const Lcm& in, WireItems Lcm::*wire_items, Items Part::*
   return out;
 }
 
-/// As many items in each part as fit, in their order.
+/// At least one part.
 template <class Part, class Items>
 std::vector<Part> divide(Part whole, Items Part::*items) {
   const Items all = std::exchange(whole.*items, {});
-  std::vector<Part> parts{whole};
-  std::size_t size = 0;
-  for (const auto& item : all) {
-    const auto more = static_cast<std::size_t>(to_wire(item).getEncodedSize());
-    const bool fits = size + more <= kPartBytes && (parts.back().*items).size() < kMostInPart;
-    if (!(parts.back().*items).empty() && !fits) {
-      parts.push_back(whole);
-      size = 0;
-    }
-    (parts.back().*items).push_back(item);
-    size += more;
-  }
+  auto packed = pack(all, [](const auto& item) { return static_cast<std::size_t>(to_wire(item).getEncodedSize()); });
+  if (packed.empty()) packed.emplace_back();
+  std::vector<Part> parts(packed.size(), whole);
   for (std::size_t i = 0; i < parts.size(); ++i) {
+    parts[i].*items = std::move(packed[i]);
     parts[i].part = static_cast<std::int32_t>(i);
     parts[i].parts = static_cast<std::int32_t>(parts.size());
   }
@@ -211,13 +193,12 @@ template <>
 Decoded<HistoryRequest> decode<HistoryRequest>(std::span<const std::uint8_t> bytes) {
   static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength), text(wire::kIdLength), text(wire::kIdLength),
                                           fixed(1 + 8 + 8 + 8 + 4)};
-  const auto in = wire::from_bytes<history_request_t>(bytes, kLayout);
-  if (!in) return bad(in.error());
-  if (!wire::is_request_id(in->request_id)) return wire::bad_id();
+  const auto in = wire::request_from_bytes<history_request_t>(bytes, kLayout);
+  if (!in) return tl::unexpected(in.error());
   wire::Filling<HistoryRequest> out({}, in->request_id);
   out.take(&HistoryRequest::id, Result<std::string>(in->request_id));
-  out.take(&HistoryRequest::author, printable(in->author, "author"));
-  out.take(&HistoryRequest::subject, printable(in->subject, "subject"));
+  out.take(&HistoryRequest::author, line(in->author, "author"));
+  out.take(&HistoryRequest::subject, line(in->subject, "subject"));
   out.take(&HistoryRequest::kind, any_kind_of(in->kind));
   out.take(&HistoryRequest::since, wire::not_negative(in->since, "since"));
   out.take(&HistoryRequest::until, wire::not_negative(in->until, "until"));
@@ -252,11 +233,10 @@ Bytes encode(const ConflictRequest& value, std::int64_t utime) {
 template <>
 Decoded<ConflictRequest> decode<ConflictRequest>(std::span<const std::uint8_t> bytes) {
   static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength), fixed(4)};
-  const auto in = wire::from_bytes<conflict_request_t>(bytes, kLayout);
-  if (!in) return bad(in.error());
-  if (!wire::is_request_id(in->request_id)) return wire::bad_id();
+  const auto in = wire::request_from_bytes<conflict_request_t>(bytes, kLayout);
+  if (!in) return tl::unexpected(in.error());
   wire::Filling<ConflictRequest> out({in->request_id, 1}, in->request_id);
-  out.take(&ConflictRequest::most, most_of(in->most, kMostRegions));
+  out.take(&ConflictRequest::most, most_of(in->most, kMostConflictRegions));
   return out.done();
 }
 

@@ -17,9 +17,10 @@ constexpr std::int64_t kMaxParts = kMaxZones;
 /// Fingerprint, utime, content, part, parts, count.
 constexpr std::size_t kBeforeItems = 8 + 8 + 8 + 4 + 4 + 4;
 
-Result<std::string> author_of(const std::string& author) {
-  if (wire::is_printable(author)) return author;
-  return refuse(Code::kBadRequest, "author must be at most 80 printable characters");
+/// What was once taken from a person is said as it is.
+Result<std::string> line(const std::string& text) {
+  if (is_line(text)) return text;
+  return refuse(Code::kBadRequest, "a text has control characters");
 }
 
 zone_t to_wire(const Zone& zone) {
@@ -36,11 +37,11 @@ zone_t to_wire(const Zone& zone) {
 
 Decoded<Zone> from_wire(const zone_t& in) {
   wire::Filling<Zone> out({}, {});
-  out.take(&Zone::name, wire::title_of(in.name));
+  out.take(&Zone::name, wire::kept_title_of(in.name));
   out.take(&Zone::kind, wire::zone_kind(in.kind));
   out.take(&Zone::volume, wire::volume_from_wire(in.volume));
   out.take(&Zone::T_map_zone, wire::from_wire(in.T_map_zone));
-  out.take(&Zone::author, author_of(in.author));
+  out.take(&Zone::author, line(in.author));
   out.take(&Zone::utime, Result<std::int64_t>(in.utime));
   out.take(&Zone::revision, wire::not_negative(in.revision, "revision"));
   return out.done();
@@ -57,10 +58,10 @@ lease_t to_wire(const Lease& lease) {
 }
 
 Decoded<Lease> from_wire(const lease_t& in) {
-  if (!wire::is_request_id(in.lease_id)) return wire::bad_id();
+  if (!is_request_id(in.lease_id)) return wire::bad_id();
   wire::Filling<Lease> out({}, {});
   out.take(&Lease::id, Result<std::string>(in.lease_id));
-  out.take(&Lease::author, author_of(in.author));
+  out.take(&Lease::author, line(in.author));
   out.take(&Lease::volume, wire::volume_from_wire(in.volume));
   out.take(&Lease::T_map_lease, wire::from_wire(in.T_map_lease));
   out.take(&Lease::until, Result<std::int64_t>(in.until));

@@ -12,11 +12,10 @@ namespace concord {
 namespace {
 
 using wire::bad;
-using wire::bad_agent;
-using wire::bad_id;
 
-/// Of a stamp: far from where sums of times would overflow.
-constexpr std::int64_t kLatestTime = std::int64_t{1} << 62;
+tl::unexpected<BadMessage> bad_agent(const std::string& id) {
+  return bad(Code::kBadName, std::string("agent must be ") + kNameRule, id);
+}
 
 }  // namespace
 
@@ -33,10 +32,8 @@ Decoded<AgentPose> decode<AgentPose>(std::span<const std::uint8_t> bytes) {
   static constexpr WireField kLayout[] = {fixed(8), text(wire::kNameLength), fixed(wire::kTransformBytes)};
   const auto in = wire::from_bytes<agent_pose_t>(bytes, kLayout);
   if (!in) return bad(in.error());
-  if (!is_name(in->frame_id)) return bad(Code::kBadFrame, "frame_id must be 1 to 40 of A-Z a-z 0-9 . _ -");
-  if (in->utime < 0 || in->utime > kLatestTime) {
-    return bad(Code::kBadRequest, "utime is no time; it must be microseconds since 1970");
-  }
+  if (!is_name(in->frame_id)) return bad(Code::kBadFrame, std::string("frame_id must be ") + kNameRule);
+  if (const auto utime = wire::time_of(in->utime); !utime) return bad(utime.error());
   const auto T = wire::from_wire(in->T_agent_base);
   if (!T) return bad(T.error());
   return AgentPose{{}, in->frame_id, *T, in->utime};
@@ -54,9 +51,8 @@ Bytes encode(const AgentRequest& value, std::int64_t utime) {
 template <>
 Decoded<AgentRequest> decode<AgentRequest>(std::span<const std::uint8_t> bytes) {
   static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength), text(wire::kNameLength), fixed(1)};
-  const auto in = wire::from_bytes<agent_request_t>(bytes, kLayout);
-  if (!in) return bad(in.error());
-  if (!wire::is_request_id(in->request_id)) return bad_id();
+  const auto in = wire::request_from_bytes<agent_request_t>(bytes, kLayout);
+  if (!in) return tl::unexpected(in.error());
   if (!is_name(in->agent)) return bad_agent(in->request_id);
   switch (in->op) {
     case agent_request_t::RESET: return AgentRequest{in->request_id, in->agent, AgentRequest::Op::kReset};
@@ -77,9 +73,8 @@ Bytes encode(const DownsampleRequest& value, std::int64_t utime) {
 template <>
 Decoded<DownsampleRequest> decode<DownsampleRequest>(std::span<const std::uint8_t> bytes) {
   static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength), text(wire::kNameLength), fixed(8)};
-  const auto in = wire::from_bytes<downsample_request_t>(bytes, kLayout);
-  if (!in) return bad(in.error());
-  if (!wire::is_request_id(in->request_id)) return bad_id();
+  const auto in = wire::request_from_bytes<downsample_request_t>(bytes, kLayout);
+  if (!in) return tl::unexpected(in.error());
   if (!is_name(in->agent)) return bad_agent(in->request_id);
   if (!(in->resolution > 0 && in->resolution <= 100)) {
     return bad(Code::kBadResolution, "resolution must lie between 0 and 100 m", in->request_id);
@@ -107,10 +102,9 @@ template <>
 Decoded<MapRequest> decode<MapRequest>(std::span<const std::uint8_t> bytes) {
   static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength),  fixed(1), text(wire::kNameLength), text(7),
                                           fixed(1), text(wire::kNameLength)};
-  const auto in = wire::from_bytes<map_request_t>(bytes, kLayout);
-  if (!in) return bad(in.error());
-  if (!wire::is_request_id(in->request_id)) return bad_id();
-  MapRequest out{in->request_id, MapRequest::Op::kList, in->map, in->format, in->overwrite != 0, in->agent};
+  const auto in = wire::request_from_bytes<map_request_t>(bytes, kLayout);
+  if (!in) return tl::unexpected(in.error());
+  MapRequest out{in->request_id, MapRequest::Op::kList, in->map, in->format, in->overwrite != 0, in->agent, in->utime};
   switch (in->op) {
     case map_request_t::LIST: return out;
     case map_request_t::SAVE: out.op = MapRequest::Op::kSave; break;
@@ -118,7 +112,7 @@ Decoded<MapRequest> decode<MapRequest>(std::span<const std::uint8_t> bytes) {
     default: return bad(Code::kBadRequest, "op must be SAVE, LIST or LOAD", in->request_id);
   }
   if (!is_name(out.map)) {
-    return bad(Code::kBadName, "a map's name is 1 to 40 of A-Z a-z 0-9 . _ -, starting with a letter or digit", out.id);
+    return bad(Code::kBadName, std::string("a map's name is ") + kNameRule, out.id);
   }
   const bool any_format = out.format.empty() && out.op == MapRequest::Op::kLoad;
   if (!any_format && out.format != "bt" && out.format != "ot" && out.format != "concord") {
@@ -148,9 +142,8 @@ template <>
 Decoded<PathRequest> decode<PathRequest>(std::span<const std::uint8_t> bytes) {
   static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength), text(wire::kNameLength),
                                           fixed(1 + 16 + 16 + 8 + 1)};
-  const auto in = wire::from_bytes<path_request_t>(bytes, kLayout);
-  if (!in) return bad(in.error());
-  if (!wire::is_request_id(in->request_id)) return bad_id();
+  const auto in = wire::request_from_bytes<path_request_t>(bytes, kLayout);
+  if (!in) return tl::unexpected(in.error());
   if (!is_name(in->robot)) return bad_agent(in->request_id);
   PathRequest out{in->request_id, in->robot,           std::nullopt, {in->goal[0], in->goal[1]},
                   in->radius,     in->keep_active != 0};

@@ -21,7 +21,7 @@ constexpr std::int64_t kMaxCloudPoints = 2'000'000;
 using wire::bad;
 
 Result<void> check_frame(const std::string& frame_id) {
-  if (!is_name(frame_id)) return refuse(Code::kBadFrame, "frame_id must be 1 to 40 of A-Z a-z 0-9 . _ -");
+  if (!is_name(frame_id)) return refuse(Code::kBadFrame, std::string("frame_id must be ") + kNameRule);
   return {};
 }
 

@@ -136,7 +136,8 @@ void read_bridge(const YAML::Node& node, const std::filesystem::path& directory,
   section.done();
   const bool local = bridge.listen == "127.0.0.1" || bridge.listen == "::1" || bridge.listen == "localhost";
   if (local || bridge.tls) return;
-  throw ConfigError("bridge.listen " + bridge.listen + " is reached from other machines: set bridge.tls: true and run concord cert");
+  throw ConfigError("bridge.listen " + bridge.listen +
+                    " is reached from other machines: set bridge.tls: true and run concord cert");
 }
 
 /// Whether packets stay on this host. LCM takes the time-to-live from the url, and more than 0 where it has none.

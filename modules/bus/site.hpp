@@ -44,8 +44,8 @@ struct Site {
   } planner;
   /// Headsets and browsers. Beyond loopback only with TLS, and each client then needs a token.
   struct Bridge {
-    std::string listen = "127.0.0.1";   ///< address; 0.0.0.0 or :: for all
-    std::int64_t port = 8443;           ///< 0: any that is free
+    std::string listen = "127.0.0.1";  ///< address; 0.0.0.0 or :: for all
+    std::int64_t port = 8443;          ///< 0: any that is free
     bool tls = false;
     std::filesystem::path certificate;  ///< PEM; empty: STATE/bridge/cert.pem, which `concord cert` makes
     std::filesystem::path key;          ///< PEM; empty: STATE/bridge/key.pem

@@ -17,9 +17,9 @@
 
 namespace concord::wire {
 
-inline constexpr std::int64_t kIdLength = 80;        ///< request ids are any text up to this
-inline constexpr std::int64_t kNameLength = 40;      ///< see is_name
-inline constexpr std::int64_t kMessageLength = 400;  ///< texts for people
+inline constexpr std::int64_t kIdLength = kMaxIdBytes;      ///< of request ids and authors
+inline constexpr std::int64_t kNameLength = kMaxNameBytes;  ///< see is_name
+inline constexpr std::int64_t kMessageLength = 400;         ///< texts for people
 inline constexpr std::int64_t kTransformBytes = 56;
 
 template <class Lcm>
@@ -29,18 +29,24 @@ template <class Lcm>
   return bytes;
 }
 
+/// Whether the type's fingerprint stands before it.
+template <class Lcm>
+[[nodiscard]] bool is_a(std::span<const std::uint8_t> bytes) {
+  std::uint64_t fingerprint = 0;
+  for (std::size_t i = 0; i < 8 && i < bytes.size(); ++i) fingerprint = fingerprint << 8 | bytes[i];
+  return bytes.size() >= 8 && static_cast<std::int64_t>(fingerprint) == Lcm::getHash();
+}
+
 /// Decodes after the layout has been checked, so that the generated code only sees lengths that hold.
 template <class Lcm>
 [[nodiscard]] Result<Lcm> from_bytes(std::span<const std::uint8_t> bytes, std::span<const WireField> layout) {
-  std::uint64_t fingerprint = 0;
-  for (std::size_t i = 0; i < 8 && i < bytes.size(); ++i) fingerprint = fingerprint << 8 | bytes[i];
-  if (bytes.size() < 8 || static_cast<std::int64_t>(fingerprint) != Lcm::getHash()) {
+  if (!is_a<Lcm>(bytes)) {
     return refuse(Code::kMalformed, std::string("not a ") + Lcm::getTypeName() + "; is the sender of this release?");
   }
-  switch (fits(bytes, layout)) {
+  const WireCheck check = check_layout(bytes, layout);
+  switch (check.fit) {
     case WireFit::kFits: break;
-    case WireFit::kTooLarge:
-      return refuse(Code::kTooLarge, std::string(Lcm::getTypeName()) + " is over a limit, see its .lcm file");
+    case WireFit::kTooLarge: return refuse(Code::kTooLarge, std::string(Lcm::getTypeName()) + " has " + check.excess);
     case WireFit::kMalformed:
       return refuse(Code::kMalformed, std::string("bytes end early or late for a ") + Lcm::getTypeName());
   }
@@ -58,18 +64,41 @@ template <class Lcm>
   return bad(Error{code, std::move(message)}, std::move(id));
 }
 
-using concord::is_printable;
-using concord::is_request_id;
+/// Of a stamp: far from where sums of times would overflow.
+inline constexpr std::int64_t kLatestTime = std::int64_t{1} << 62;
+
+[[nodiscard]] inline Result<std::int64_t> time_of(std::int64_t utime) {
+  if (utime >= 0 && utime <= kLatestTime) return utime;
+  return refuse(Code::kBadRequest, "utime is no time; it must be microseconds since 1970");
+}
 
 [[nodiscard]] inline tl::unexpected<BadMessage> bad_id() {
-  return bad(Code::kBadRequest, "request id must be 1 to 80 printable characters");
+  return bad(Code::kBadRequest, std::string("request id must be ") + kIdRule);
 }
-[[nodiscard]] inline tl::unexpected<BadMessage> bad_author(const std::string& id) {
-  return bad(Code::kBadRequest, "author must be at most 80 printable characters", id);
+[[nodiscard]] inline Result<std::string> author_of(const std::string& author) {
+  if (is_author(author)) return author;
+  return refuse(Code::kBadRequest, std::string("author must be ") + kAuthorRule);
 }
-inline constexpr const char* kBadAgent = "agent must be 1 to 40 of A-Z a-z 0-9 . _ -, starting with a letter or digit";
-[[nodiscard]] inline tl::unexpected<BadMessage> bad_agent(const std::string& id) {
-  return bad(Code::kBadName, kBadAgent, id);
+[[nodiscard]] inline Result<std::string> agent_of(const std::string& agent) {
+  if (is_name(agent)) return agent;
+  return refuse(Code::kBadName, std::string("agent must be ") + kNameRule);
+}
+
+/// The id in the place where every request has it, behind its time; empty: it cannot be read, or is none.
+[[nodiscard]] inline std::string request_id_in(std::span<const std::uint8_t> bytes) {
+  static constexpr std::int64_t kTimeBytes = 8;
+  const std::string id = text_at(bytes, kTimeBytes, kIdLength).value_or("");
+  return is_request_id(id) ? id : std::string();
+}
+
+/// A request whose asker is known. What is wrong with it is said to them wherever their id can be read, be the message
+/// cut off or over a limit.
+template <class Lcm>
+[[nodiscard]] Decoded<Lcm> request_from_bytes(std::span<const std::uint8_t> bytes, std::span<const WireField> layout) {
+  auto in = from_bytes<Lcm>(bytes, layout);
+  if (!in) return bad(in.error(), is_a<Lcm>(bytes) ? request_id_in(bytes) : std::string());
+  if (request_id_in(bytes).empty()) return bad_id();
+  return std::move(*in);
 }
 
 /// A value that is filled field by field; the first refusal stays, and reaches the asker `id`.

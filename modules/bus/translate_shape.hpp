@@ -30,9 +30,12 @@ inline constexpr WireField kVolume = record(kShapeOf<0, kMaxVolumePoints>);
 /// Refused also: what is no volume (kBadShape), or has over kMaxVolumePoints corners (kTooLarge).
 [[nodiscard]] Result<Volume> volume_from_wire(const shape_t& in);
 
-inline constexpr std::int64_t kTitleLength = 80;  ///< see is_title
+inline constexpr std::int64_t kTitleLength = kMaxTitleBytes;  ///< see is_title
 
+/// Of a new zone.
 [[nodiscard]] Result<std::string> title_of(const std::string& name);
+/// Of one that there is, made when names were taken that are not any more.
+[[nodiscard]] Result<std::string> kept_title_of(const std::string& name);
 [[nodiscard]] std::int8_t to_wire(Zone::Kind kind);
 [[nodiscard]] Result<Zone::Kind> zone_kind(std::int8_t kind);
 

@@ -1,6 +1,5 @@
 #include "bus/wire_layout.hpp"
 
-#include <optional>
 #include <string_view>
 
 #include "core/text.hpp"
@@ -25,16 +24,32 @@ class Walk {
     return true;
   }
   [[nodiscard]] bool done() const { return rest_.empty(); }
-  [[nodiscard]] bool too_large() const { return too_large_; }
+  /// What is over which limit; empty: nothing is.
+  [[nodiscard]] const std::string& excess() const { return excess_; }
+
+  std::optional<std::string_view> text(std::int64_t most) {
+    const std::optional<std::int32_t> length = int32();
+    if (!length || *length < 1) return std::nullopt;
+    if (*length - 1 > most) {
+      exceed("a text of " + std::to_string(*length - 1) + " bytes", most);
+      return std::nullopt;
+    }
+    const auto size = static_cast<std::size_t>(*length);
+    if (size > rest_.size() || rest_[size - 1] != 0) return std::nullopt;
+    const std::string_view text(reinterpret_cast<const char*>(rest_.data()), size - 1);
+    if (!is_utf8(text)) return std::nullopt;
+    rest_ = rest_.subspan(size);
+    return text;
+  }
 
  private:
   bool one(const WireField& field) {
     switch (field.kind) {
       case WireField::Kind::kFixed: return skip(field.bytes);
-      case WireField::Kind::kText: return one_text(field.bytes);
+      case WireField::Kind::kText: return text(field.bytes).has_value();
       case WireField::Kind::kCount: return one_count(field.bytes);
       case WireField::Kind::kArray: return skip(count_ * field.bytes);
-      case WireField::Kind::kTexts: return repeat([&] { return one_text(field.bytes); });
+      case WireField::Kind::kTexts: return repeat([&] { return text(field.bytes).has_value(); });
       case WireField::Kind::kRecord: return one_record(field.record);
       case WireField::Kind::kRecords: return repeat([&] { return one_record(field.record); });
     }
@@ -60,19 +75,9 @@ class Walk {
   bool one_count(std::int64_t most) {
     const std::optional<std::int32_t> value = int32();
     if (!value || *value < 0) return false;
-    if (*value > most) return fail_too_large();
+    if (*value > most) return exceed(std::to_string(*value) + " entries", most);
     count_ = *value;
     return true;
-  }
-
-  bool one_text(std::int64_t most) {
-    const std::optional<std::int32_t> length = int32();
-    if (!length || *length < 1) return false;
-    if (*length - 1 > most) return fail_too_large();
-    const auto size = static_cast<std::size_t>(*length);
-    if (size > rest_.size() || rest_[size - 1] != 0) return false;
-    if (!is_utf8({reinterpret_cast<const char*>(rest_.data()), size - 1})) return false;
-    return skip(*length);
   }
 
   std::optional<std::int32_t> int32() {
@@ -83,24 +88,32 @@ class Walk {
     return static_cast<std::int32_t>(value);
   }
 
-  bool fail_too_large() {
-    too_large_ = true;
+  bool exceed(const std::string& what, std::int64_t most) {
+    excess_ = what + " where at most " + std::to_string(most) + " are taken";
     return false;
   }
 
   std::span<const std::uint8_t> rest_;
   std::int64_t count_ = 0;
-  bool too_large_ = false;
+  std::string excess_;
 };
 
 constexpr std::int64_t kFingerprintBytes = 8;
 
 }  // namespace
 
-WireFit fits(std::span<const std::uint8_t> bytes, std::span<const WireField> layout) {
+WireCheck check_layout(std::span<const std::uint8_t> bytes, std::span<const WireField> layout) {
   Walk walk(bytes);
-  if (walk.skip(kFingerprintBytes) && walk.fields(layout) && walk.done()) return WireFit::kFits;
-  return walk.too_large() ? WireFit::kTooLarge : WireFit::kMalformed;
+  if (walk.skip(kFingerprintBytes) && walk.fields(layout) && walk.done()) return {};
+  if (walk.excess().empty()) return {WireFit::kMalformed, {}};
+  return {WireFit::kTooLarge, walk.excess()};
+}
+
+std::optional<std::string> text_at(std::span<const std::uint8_t> bytes, std::int64_t offset, std::int64_t most) {
+  Walk walk(bytes);
+  if (!walk.skip(kFingerprintBytes + offset)) return std::nullopt;
+  const auto text = walk.text(most);
+  return text ? std::optional<std::string>(*text) : std::nullopt;
 }
 
 }  // namespace concord

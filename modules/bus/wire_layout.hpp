@@ -1,8 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
-#include <vector>
+#include <string>
 
 namespace concord {
 
@@ -37,7 +38,16 @@ struct WireField {
 
 enum class WireFit { kFits, kMalformed, kTooLarge };
 
+struct WireCheck {
+  WireFit fit = WireFit::kFits;
+  std::string excess;  ///< if too large: what is over which limit, for a person
+};
+
 /// Whether `bytes` (fingerprint included) is exactly one message of this shape, within its limits.
-[[nodiscard]] WireFit fits(std::span<const std::uint8_t> bytes, std::span<const WireField> layout);
+[[nodiscard]] WireCheck check_layout(std::span<const std::uint8_t> bytes, std::span<const WireField> layout);
+
+/// The text of at most `most` bytes that stands `offset` bytes behind the fingerprint; none: there is no such text.
+[[nodiscard]] std::optional<std::string> text_at(std::span<const std::uint8_t> bytes, std::int64_t offset,
+                                                 std::int64_t most);
 
 }  // namespace concord

@@ -26,7 +26,7 @@ std::map<std::string, Zone> zones_of(const MapArchive& archive) {
 
 std::map<std::string, std::int64_t> count_kinds(const MapArchive& archive) {
   std::map<std::string, std::int64_t> counts;
-  for (const Correction& correction : archive.corrections) ++counts[name(summary(correction, true).kind)];
+  for (const Correction& correction : archive.corrections) ++counts[word_for(summary(correction, true).kind)];
   return counts;
 }
 

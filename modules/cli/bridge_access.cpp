@@ -53,13 +53,15 @@ Outcome token(const TokenOptions& options, const Common& common) {
   if (options.op == "remove") {
     const auto removed = store.remove(options.name);
     if (!removed) return fail(removed.error());
-    common.print({{"name", options.name}}, "token " + options.name + " opens nothing any more; who is in stays until they leave");
+    common.print({{"name", options.name}},
+                 "token " + options.name + " opens nothing any more; who is in stays until they leave");
     return Exit::kDone;
   }
   const auto made = store.add(options.name, role_of(options.role), now());
   if (!made) return fail(made.error());
   common.print({{"name", options.name}, {"role", options.role}, {"token", *made}},
-               *made + "\nThis is " + options.name + "'s token (" + options.role + "). It is shown once and stored as a hash only.");
+               *made + "\nThis is " + options.name + "'s token (" + options.role +
+                   "). It is shown once and stored as a hash only.");
   return Exit::kDone;
 }
 
@@ -92,7 +94,8 @@ Outcome cert(const CertOptions& options, const Common& common) {
   const std::filesystem::path file = hmd::certificate_file(site), key = hmd::key_file(site);
   std::error_code error;
   if (!options.overwrite && (std::filesystem::exists(file, error) || std::filesystem::exists(key, error))) {
-    return fail(Exit::kUnusable, name(Code::kExists), file.string() + " is there; --overwrite makes another, which headsets accept anew");
+    return fail(Exit::kUnusable, name(Code::kExists),
+                file.string() + " is there; --overwrite makes another, which headsets accept anew");
   }
   const auto made = hmd::make_certificate(options.names.empty() ? own_names() : options.names, now() / 1'000'000);
   if (!made) return fail(made.error());
@@ -105,12 +108,14 @@ Outcome cert(const CertOptions& options, const Common& common) {
   if (!written) return fail(written.error());
   const std::string host = options.names.empty() ? own_names()[0] : options.names[0];
   const std::string address = "https://" + host + ":" + std::to_string(site.bridge.port) + "/";
-  common.print({{"certificate", file.string()}, {"key", key.string()}, {"fingerprint", made->fingerprint}, {"address", address}},
-               file.string() + "\nSHA-256 " + made->fingerprint +
-                   "\n\nIn the site file:  bridge: {listen: 0.0.0.0, tls: true}\nThen, in the headset's browser, open " + address +
-                   "\nIt says that the connection is not private, since nobody but you vouches for this certificate. Choose"
-                   "\nAdvanced, compare the SHA-256 fingerprint if the browser shows it, and proceed; once is enough until it"
-                   "\nexpires in 397 days. The address must be one of the names that the certificate was made for.");
+  common.print(
+      {{"certificate", file.string()}, {"key", key.string()}, {"fingerprint", made->fingerprint}, {"address", address}},
+      file.string() + "\nSHA-256 " + made->fingerprint +
+          "\n\nIn the site file:  bridge: {listen: 0.0.0.0, tls: true}\nThen, in the headset's browser, open " +
+          address +
+          "\nIt says that the connection is not private, since nobody but you vouches for this certificate. Choose"
+          "\nAdvanced, compare the SHA-256 fingerprint if the browser shows it, and proceed; once is enough until it"
+          "\nexpires in 397 days. The address must be one of the names that the certificate was made for.");
   return Exit::kDone;
 }
 
@@ -120,7 +125,9 @@ void add_bridge_access(Program& program) {
   auto tokens = std::make_shared<TokenOptions>();
   CLI::App& token_command = program.add("token", "who may come in through the bridge from other machines",
                                         [tokens](const Common& common) { return token(*tokens, common); });
-  token_command.add_option("op", tokens->op, "add, list or remove")->required()->check(CLI::IsMember({"add", "list", "remove"}));
+  token_command.add_option("op", tokens->op, "add, list or remove")
+      ->required()
+      ->check(CLI::IsMember({"add", "list", "remove"}));
   token_command.add_option("name", tokens->name, "whose: stands in the history of what they do");
   token_command.add_option("--role", tokens->role, "view, edit, or robot: edit, and send robots")
       ->capture_default_str()

@@ -86,10 +86,14 @@ void add_leases(Program& program);
 void add_conflicts(Program& program);
 /// set-weight, localise.
 void add_agent_corrections(Program& program);
-/// set-transform, goal, reset, remove.
+/// goal, paths.
+void add_goals(Program& program);
+/// set-transform, reset, remove.
 void add_requests(Program& program);
 /// save, load, maps.
 void add_saved_maps(Program& program);
+/// align, alignment, alignments.
+void add_align(Program& program);
 void add_downsample(Program& program);
 void add_publish(Program& program);
 /// map, digest.

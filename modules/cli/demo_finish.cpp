@@ -41,6 +41,10 @@ void DemoRun::score() {
   const DemoAgent& robot = scene_.agents.front();
   const DemoScorer scorer(*scene_.world, scene_.resolution, robot.T_map_agent);
   report_.robot = scorer.robot(copies_->agents.at(robot.id)->map());
+  for (std::size_t i = 0; i < scene_.agents.size(); ++i) {
+    const DemoAgent& agent = scene_.agents[i];
+    report_.agents[i].recall = scorer.alone(copies_->agents.at(agent.id)->map(), agent.T_map_agent).recall;
+  }
   report_.merged = scorer.merged(before_edit_);
   if (!scene_.edit.empty()) report_.edited = scorer.merged(copies_->map.map());
   report_.one_agent_seconds = scorer.robot_reached(moments_, kNearlyAll * report_.merged->recall);
@@ -58,7 +62,8 @@ DemoRun::Step DemoRun::tell() {
     if (state == nullptr) return fail(Exit::kIncomplete, "INCOMPLETE", "merge no longer lists " + agent.id);
     const std::int64_t lost = watch_->clouds_lost(agent);
     if (lost > 0) say(agent.id + ": " + format_count(lost) + " clouds were lost on their way to ingest");
-    report_.agents.push_back({*state, &copies_->agents.at(agent.id)->map(), watch_->bytes_sent(agent), lost});
+    report_.agents.push_back(
+        {*state, &copies_->agents.at(agent.id)->map(), watch_->bytes_sent(agent), lost, std::nullopt});
   }
   report_.edit = scene_.edit;
   report_.author = scene_.author;
@@ -74,9 +79,10 @@ DemoRun::Step DemoRun::tell() {
 
 void DemoRun::show() {
   const std::filesystem::path page = std::filesystem::absolute(options_.out / "index.html");
-  say("page: file://" + page.string());
+  say("report: file://" + page.string());
+  say("the map: " + person_->page());
   if (isatty(STDIN_FILENO) == 0) return;
-  say("the stack goes on until Ctrl-C; try: ./run concord status, ./run spy");
+  say("the stack goes on until Ctrl-C; open the map in a browser, or try ./run concord status, ./run spy");
   while (!end_requested()) live_->wait(0.5, end_requested);
 }
 

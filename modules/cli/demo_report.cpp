@@ -51,21 +51,16 @@ const MapScore* last_score(const DemoReport& report) {
 
 std::string percent(double share) { return format_number(100 * share, 1) + " %"; }
 
-std::string seconds_or_never(const std::optional<double>& seconds) {
-  return seconds ? format_number(*seconds, 0) + " s" : "never";
-}
-
 std::vector<std::pair<std::string, std::string>> numbers_of(const DemoReport& report) {
   std::vector<std::pair<std::string, std::string>> numbers;
   const auto add = [&](const char* name, std::string value) { numbers.push_back({name, std::move(value)}); };
   add("occupied voxels", format_count(static_cast<std::int64_t>(report.map->occupied_count())));
   if (const MapScore* score = last_score(report)) {
     add("precision (within one voxel)", percent(score->precision));
-    add("recall (within one voxel)", percent(score->recall));
+    add("true surface shown (recall)", percent(score->recall));
   }
-  if (report.merged) {
-    add("90 % of this surface, first robot alone", seconds_or_never(report.one_agent_seconds));
-    add("90 % of this surface, all agents", seconds_or_never(report.all_agents_seconds));
+  for (const auto& agent : report.agents) {
+    if (agent.recall) numbers.push_back({"by " + agent.state.id + " alone", percent(*agent.recall)});
   }
   add("sent by agents", format_kilobytes(report.bytes_sent()));
   add("clouds lost on the way", format_count(report.clouds_lost()));
@@ -100,10 +95,13 @@ std::string row(const std::vector<std::string>& cells, const char* tag) {
 }
 
 std::string agents_table(const DemoReport& report) {
-  std::string out = "<table>\n" + row({"agent", "kind", "known voxels", "occupied", "sent", "clouds lost"}, "th");
+  std::string out =
+      "<table>\n" +
+      row({"agent", "kind", "known voxels", "occupied", "surface shown alone", "sent", "clouds lost"}, "th");
   for (const auto& agent : report.agents) {
     out += row({agent.state.id, agent.state.kind, format_count(agent.state.known), format_count(agent.state.occupied),
-                format_kilobytes(agent.bytes_sent), format_count(agent.clouds_lost)},
+                agent.recall ? percent(*agent.recall) : "–", format_kilobytes(agent.bytes_sent),
+                format_count(agent.clouds_lost)},
                "td");
   }
   return out + "</table>\n";
@@ -149,6 +147,7 @@ nlohmann::json to_json(const DemoReport& report) {
     object["voxels"] = agent.state.known;
     object["bytes_sent"] = agent.bytes_sent;
     object["clouds_lost"] = agent.clouds_lost;
+    object["recall"] = or_null(agent.recall);
     agents.push_back(std::move(object));
   }
   const MapScore* score = last_score(report);
@@ -215,7 +214,8 @@ td + td { font-variant-numeric: tabular-nums; }
   out += agents_table(report) + features_table(report) + paths_table(report);
   out +=
       "<p>The map: <a href=\"map.bt\">map.bt</a> (OctoMap). All numbers: <a href=\"report.json\">report.json</a>. "
-      "Everything that was said: <a href=\"demo.lcm\">demo.lcm</a> (LCM log).</p>\n</body></html>\n";
+      "What lcm-logger heard of all that was said: <a href=\"demo.lcm\">demo.lcm</a>; it cannot ask again for what it "
+      "missed, and <code>./run replay</code> names that.</p>\n</body></html>\n";
   return out;
 }
 

@@ -20,7 +20,8 @@ struct DemoReport {
     AgentState state;
     const BrickMap* map = nullptr;  ///< its submap, agent's frame
     std::int64_t bytes_sent = 0;
-    std::int64_t clouds_lost = 0;  ///< that ingest never got, by their numbers
+    std::int64_t clouds_lost = 0;                 ///< that ingest never got, by their numbers
+    std::optional<double> recall = std::nullopt;  ///< share of the true surface that its submap alone shows
   };
 
   double resolution = 0.05;

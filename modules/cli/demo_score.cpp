@@ -40,8 +40,8 @@ BrickMap occupied_part(const BrickMap& map) {
 DemoScorer::DemoScorer(const World& world, double resolution, Transform T_map_robot)
     : resolution_(resolution), T_map_robot_(std::move(T_map_robot)), truth_(make_truth(world, resolution)) {}
 
-MapScore DemoScorer::robot(const BrickMap& submap) const {
-  const Layer layer{&submap, T_map_robot_, 1};
+MapScore DemoScorer::alone(const BrickMap& submap, const Transform& T_map_agent) const {
+  const Layer layer{&submap, T_map_agent, 1};
   return score(compose(std::span(&layer, 1), {}, Policy::kMean, resolution_, threads()).values, truth_);
 }
 

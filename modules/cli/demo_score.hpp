@@ -26,8 +26,9 @@ class DemoScorer {
   DemoScorer(const World& world, double resolution, Transform T_map_robot);
 
   [[nodiscard]] MapScore merged(const BrickMap& map) const { return score(map, truth_); }
-  /// Of a submap in the robot's own frame.
-  [[nodiscard]] MapScore robot(const BrickMap& submap) const;
+  /// Of a submap in its own frame, put where its agent is known to be.
+  [[nodiscard]] MapScore alone(const BrickMap& submap, const Transform& T_map_agent) const;
+  [[nodiscard]] MapScore robot(const BrickMap& submap) const { return alone(submap, T_map_robot_); }
 
   /// Simulated seconds until the merged map, or the robot's own, showed this share of the surface; absent where none
   /// of the moments does. @pre moments are in order of time: what was shown is taken to stay shown.

@@ -65,12 +65,11 @@ void print_edit(const Answer& answer, const std::optional<Operation>& made, doub
   common.print(object, words);
 }
 
-/// What the wire takes: ids may be another program's, and of an edit that was made with any of them.
-Result<void> check_id(const std::string& id) {
-  if (is_request_id(id)) return {};
-  return refuse(Code::kBadName, "an id is 1 to 80 printable bytes of UTF-8");
+/// Whatever an edit was called, it can be taken back.
+Result<void> check_edit_id(const std::string& id) {
+  if (is_kept_id(id)) return {};
+  return refuse(Code::kBadName, std::string("an edit's id is ") + kKeptIdRule);
 }
-Result<void> check_own_id(const std::string& id) { return id.empty() ? Result<void>() : check_id(id); }
 
 Outcome edit(const Options& options, const Common& common) {
   if (const auto fine = check_own_id(options.id); !fine) return fail(fine.error());
@@ -79,6 +78,10 @@ Outcome edit(const Options& options, const Common& common) {
   auto shape = shape_of(options.selection, common.site().resolution);
   if (!shape) return fail(shape.error());
   Live live(common);
+  if (auto* voxels = std::get_if<VoxelList>(&*shape)) {  // they are the map's, whose resolution only the stack knows
+    if (const auto taken = live.take_resolution(); !taken) return tl::unexpected(taken.error());
+    voxels->resolution = live.site().resolution;
+  }
   EditRequest request;
   request.id = live.id_or_new(options.id);
   request.author = author_or_user(options.author);
@@ -88,19 +91,21 @@ Outcome edit(const Options& options, const Common& common) {
   request.move = *move;
   request.base_revision = options.base_revision;
   request.utime = live.bus().now();
-  const auto answer = live.ask("in/edit", encode(request), request.id);
+  const auto answer = live.ask("in/edit", request);
   if (!answer) return tl::unexpected(answer.error());
-  print_edit(*answer, request_made(live, *answer), live.site().resolution, common);
+  auto made = request_made(live, *answer);
+  if (!live.take_resolution()) made.reset();
+  print_edit(*answer, made, live.site().resolution, common);
   return Exit::kDone;
 }
 
 Outcome undo(const UndoOptions& options, bool redo, const Common& common) {
-  const auto fine = check_id(options.edit).and_then([&] { return check_own_id(options.id); });
+  const auto fine = check_edit_id(options.edit).and_then([&] { return check_own_id(options.id); });
   if (!fine) return fail(fine.error());
   Live live(common);
   const UndoRequest request{live.id_or_new(options.id), author_or_user(options.author), options.edit, redo,
                             live.bus().now()};
-  return print_revision(live.ask("in/undo", encode(request), request.id), common);
+  return print_revision(live.ask("in/undo", request), common);
 }
 
 void add_undo(Program& program, const std::string& name, const std::string& what, bool redo) {

@@ -8,32 +8,6 @@
 namespace concord {
 namespace {
 
-using Corners = std::vector<Eigen::Vector3d>;
-
-struct CornersOf {
-  Corners operator()(const Box& box) const {
-    Corners corners;
-    for (int i = 0; i < 8; ++i) {
-      corners.emplace_back((i & 1 ? box.max : box.min).x(), (i & 2 ? box.max : box.min).y(),
-                           (i & 4 ? box.max : box.min).z());
-    }
-    return corners;
-  }
-  Corners operator()(const OrientedBox& box) const {
-    Corners corners = (*this)(Box{-box.size / 2, box.size / 2});
-    for (Eigen::Vector3d& corner : corners) corner = box.T_frame_box * corner;
-    return corners;
-  }
-  Corners operator()(const Prism& prism) const {
-    Corners corners;
-    for (const Eigen::Vector2d& p : prism.points) {
-      corners.emplace_back(p.x(), p.y(), prism.low);
-      corners.emplace_back(p.x(), p.y(), prism.high);
-    }
-    return corners;
-  }
-};
-
 nlohmann::json numbers(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
 
 struct ToJson {
@@ -59,14 +33,10 @@ Box extent(VoxelIndex min, VoxelIndex max, double resolution) {
 }
 
 Box extent(const Volume& volume, const Transform& T_map_volume) {
-  const Corners corners = std::visit(CornersOf{}, volume);
-  Box around{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-  if (!corners.empty()) around.min = around.max = T_map_volume * corners.front();
-  for (const Eigen::Vector3d& corner : corners) {
-    const Eigen::Vector3d p_map = T_map_volume * corner;
-    around = {around.min.cwiseMin(p_map), around.max.cwiseMax(p_map)};
-  }
-  return around;
+  Eigen::AlignedBox3d around;
+  for (const Eigen::Vector3d& corner : corners(volume)) around.extend(T_map_volume * corner);
+  if (around.isEmpty()) return {};
+  return {around.min(), around.max()};
 }
 
 std::string to_words(const Box& extent) {

@@ -1,5 +1,7 @@
 #include "cli/history.hpp"
 
+#include <algorithm>
+
 #include "cli/extent.hpp"
 #include "cli/numbers.hpp"
 #include "cli/parts.hpp"
@@ -11,11 +13,6 @@ namespace {
 
 /// Few enough that a page arrives in some tens of parts, of which lost ones are soon repeated.
 constexpr std::int64_t kPage = 1000;
-
-bool is_edit(const Operation& operation) {
-  return operation.kind == Operation::Kind::kAdd || operation.kind == Operation::Kind::kDelete ||
-         operation.kind == Operation::Kind::kMove;
-}
 
 Box extent(const Operation& operation, double resolution) { return extent(operation.min, operation.max, resolution); }
 
@@ -29,20 +26,10 @@ std::string quoted(const std::string& text) {
 
 }  // namespace
 
-const char* name(Operation::Kind kind) {
-  switch (kind) {
-    case Operation::Kind::kAdd: return "add";
-    case Operation::Kind::kDelete: return "delete";
-    case Operation::Kind::kMove: return "move";
-    case Operation::Kind::kUndo: return "undo";
-    case Operation::Kind::kRedo: return "redo";
-    case Operation::Kind::kZoneAdd: return "zone-add";
-    case Operation::Kind::kZoneChange: return "zone-change";
-    case Operation::Kind::kZoneDelete: return "zone-delete";
-    case Operation::Kind::kTransform: return "transform";
-    case Operation::Kind::kWeight: return "weight";
-  }
-  return "";
+std::string word_for(Operation::Kind kind) {
+  std::string word(name(kind));
+  std::ranges::replace(word, '_', '-');
+  return word;
 }
 
 tl::expected<std::vector<Operation>, Failure> request_history(Live& live, HistoryRequest request, std::int64_t most) {
@@ -53,8 +40,8 @@ tl::expected<std::vector<Operation>, Failure> request_history(Live& live, Histor
     if (page == 0) return all;
     request.id = live.new_id();
     request.most = static_cast<int>(page);
-    const Question question{"in/history_request", encode(request, live.bus().now()), request.id, "merge"};
-    const auto parts = ask_in_parts<HistoryPart>(live, question, "out/history");
+    const auto parts =
+        ask_in_parts<HistoryPart>(live, Respondent{"in/history_request", "merge", "out/history"}, request);
     if (!parts) return tl::unexpected(parts.error());
     const std::size_t before = all.size();
     for (const HistoryPart& part : *parts) {
@@ -76,11 +63,11 @@ nlohmann::json to_json(const std::vector<Operation>& operations, double resoluti
                      {"author", o.author},
                      {"utime", o.utime},
                      {"time", format_utc_time(o.utime)},
-                     {"kind", name(o.kind)},
+                     {"kind", word_for(o.kind)},
                      {"subject", o.subject.empty() ? nlohmann::json() : nlohmann::json(o.subject)},
                      {"voxels", o.count},
                      {"undone", !o.active},
-                     {"bounds", is_edit(o) ? to_json(extent(o, resolution)) : nlohmann::json()}});
+                     {"bounds", is_edit(o.kind) ? to_json(extent(o, resolution)) : nlohmann::json()}});
   }
   return {{"operations", array}};
 }
@@ -89,9 +76,9 @@ std::string to_words(const std::vector<Operation>& operations, double resolution
   std::vector<std::vector<std::string>> rows = {
       {"revision", "time", "who", "what", "of", "voxels", kExtentHeading, "", "id"}};
   for (const Operation& o : operations) {
-    rows.push_back({std::to_string(o.revision), format_local_time(o.utime), o.author, name(o.kind), o.subject,
-                    is_edit(o) ? format_count(o.count) : "", is_edit(o) ? to_words(extent(o, resolution)) : "",
-                    o.active ? "" : "undone", o.id});
+    rows.push_back({std::to_string(o.revision), format_local_time(o.utime), o.author, word_for(o.kind), o.subject,
+                    is_edit(o.kind) ? format_count(o.count) : "",
+                    is_edit(o.kind) ? to_words(extent(o, resolution)) : "", o.active ? "" : "undone", o.id});
   }
   return format_table(rows, "rllllrlll");
 }
@@ -99,12 +86,12 @@ std::string to_words(const std::vector<Operation>& operations, double resolution
 std::string to_csv(const std::vector<Operation>& operations, double resolution) {
   std::string csv = "revision,time,author,kind,subject,id,voxels,undone,min_x,min_y,min_z,max_x,max_y,max_z\r\n";
   for (const Operation& o : operations) {
-    csv += std::to_string(o.revision) + "," + format_utc_time(o.utime) + "," + quoted(o.author) + "," + name(o.kind) +
-           "," + quoted(o.subject) + "," + quoted(o.id) + "," + std::to_string(o.count) + "," +
+    csv += std::to_string(o.revision) + "," + format_utc_time(o.utime) + "," + quoted(o.author) + "," +
+           word_for(o.kind) + "," + quoted(o.subject) + "," + quoted(o.id) + "," + std::to_string(o.count) + "," +
            (o.active ? "false" : "true");
     const Box box = extent(o, resolution);
     for (const Eigen::Vector3d* corner : {&box.min, &box.max}) {
-      for (int i = 0; i < 3; ++i) csv += "," + (is_edit(o) ? format_number((*corner)[i], 4) : "");
+      for (int i = 0; i < 3; ++i) csv += "," + (is_edit(o.kind) ? format_number((*corner)[i], 4) : "");
     }
     csv += "\r\n";
   }

@@ -15,7 +15,7 @@ namespace concord {
                                                                             std::int64_t most);
 
 /// "add", "zone-change" and so on, as --kind takes them.
-[[nodiscard]] const char* name(Operation::Kind kind);
+[[nodiscard]] std::string word_for(Operation::Kind kind);
 
 /// `resolution` turns voxels into metres.
 [[nodiscard]] nlohmann::json to_json(const std::vector<Operation>& operations, double resolution);

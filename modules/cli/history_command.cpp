@@ -19,8 +19,9 @@ struct Options {
 
 std::map<std::string, Operation::Kind> kinds() {
   std::map<std::string, Operation::Kind> all;
-  for (int kind = 0; kind <= static_cast<int>(Operation::Kind::kWeight); ++kind) {
-    all[name(static_cast<Operation::Kind>(kind))] = static_cast<Operation::Kind>(kind);
+  for (const std::string_view name : kOperationNames) {
+    const Operation::Kind kind = *operation_called(name);
+    all[word_for(kind)] = kind;
   }
   return all;
 }
@@ -63,6 +64,7 @@ Outcome history(const Options& options, const Common& common) {
   if (!request) return fail(request.error());
   const auto operations = request_history(live, std::move(*request), options.most);
   if (!operations) return tl::unexpected(operations.error());
+  if (const auto taken = live.take_resolution(); !taken) return tl::unexpected(taken.error());
   const double resolution = live.site().resolution;
   if (!options.file.empty()) return export_to(options.file, *operations, resolution, common);
   common.print(to_json(*operations, resolution),

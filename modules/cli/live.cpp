@@ -22,6 +22,13 @@ Live::Live(const Common& common)
   hear<Path>("out/path/.*", [this](const std::string&, Path path) {
     if (is_ours(path.id)) paths_[path.id] = std::move(path);
   });
+  hear<AgentList>("out/agents", [this](const std::string&, const AgentList& list) { resolution_ = list.resolution; });
+}
+
+tl::expected<void, Failure> Live::take_resolution() {
+  if (!wait(timeout_, [this] { return resolution_.has_value(); })) return no_answer("merge");
+  site_.resolution = *resolution_;
+  return {};
 }
 
 std::string Live::new_id() { return id_prefix_ + std::to_string(++next_id_); }
@@ -91,7 +98,7 @@ tl::unexpected<Failure> refused(const Answer& answer) {
   return fail(Exit::kRefused, answer.code, answer.process + ": " + answer.message);
 }
 
-tl::expected<Answer, Failure> Live::ask(const std::string& channel, const Bytes& request, const std::string& id) {
+tl::expected<Answer, Failure> Live::ask_bytes(const std::string& channel, const Bytes& request, const std::string& id) {
   answers_.erase(id);  // a lease is asked for with one id again and again
   ask_until(channel, request, timeout_, [&] { return answer_to(id) != nullptr && !is_busy(*answer_to(id)); });
   if (answer_to(id) == nullptr) return no_answer("the stack");
@@ -148,7 +155,9 @@ tl::expected<void, Failure> wait_for_submap(Live& live, StreamCopy& copy, const 
 
 tl::expected<Path, Failure> request_path(Live& live, const PathRequest& request) {
   const auto done = [&] { return live.path_for(request.id) != nullptr || live.answer_to(request.id) != nullptr; };
-  if (!live.ask_until("in/path_request", encode(request, live.bus().now()), live.timeout(), done)) {
+  const auto bytes = to_send(request, live.bus().now());
+  if (!bytes) return tl::unexpected(bytes.error());
+  if (!live.ask_until("in/path_request", *bytes, live.timeout(), done)) {
     return live.no_answer("the planner");
   }
   if (const Path* path = live.path_for(request.id)) return *path;

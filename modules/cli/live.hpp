@@ -17,6 +17,20 @@ namespace concord {
 /// Until then a request is sent again and again: datagrams get lost, and the stack does what it is asked once per id.
 inline constexpr std::int64_t kAskAgain = 300'000;
 
+/// A request as it goes out; or what the stack would refuse it for unread, by the same limits.
+template <class Request>
+[[nodiscard]] tl::expected<Bytes, Failure> to_send(const Request& request, std::int64_t now) {
+  Bytes bytes = [&] {
+    if constexpr (requires { encode(request); }) {
+      return encode(request);
+    } else {
+      return encode(request, now);
+    }
+  }();
+  if (const auto read = decode<Request>(bytes); !read) return fail(read.error().error);
+  return bytes;
+}
+
 /// The running stack, as a client sees it.
 class Live {
  public:
@@ -28,9 +42,13 @@ class Live {
   [[nodiscard]] const Site& site() const { return site_; }
   [[nodiscard]] double timeout() const { return timeout_; }
 
+  /// Makes `site().resolution` the stack's, which may run on another site file: only then are its voxels the metres
+  /// they are taken for. Merge says it each second. Fails with kNoAnswer.
+  [[nodiscard]] tl::expected<void, Failure> take_resolution();
+
   /// An id that nobody else uses.
   [[nodiscard]] std::string new_id();
-  /// `given`, whose answers are kept from now on; a new one if it is empty. @pre empty or is_name.
+  /// `given`, whose answers are kept from now on; a new one if it is empty. @pre empty or is_request_id.
   [[nodiscard]] std::string id_or_new(const std::string& given);
 
   /// Calls `take(channel, value)` with each good message; what is malformed is passed over.
@@ -50,8 +68,12 @@ class Live {
 
   /// Asks and waits for the next answer to `id`; who is busy is asked again. Fails with what the stack refused it for,
   /// or kNoAnswer.
-  [[nodiscard]] tl::expected<Answer, Failure> ask(const std::string& channel, const Bytes& request,
-                                                  const std::string& id);
+  template <class Request>
+  [[nodiscard]] tl::expected<Answer, Failure> ask(const std::string& channel, const Request& request) {
+    return to_send(request, bus_.now()).and_then([&](const Bytes& bytes) {
+      return ask_bytes(channel, bytes, request.id);
+    });
+  }
   /// The answer to one of our ids, once it has come; of this process, where several answer.
   [[nodiscard]] const Answer* answer_to(const std::string& id) const;
   [[nodiscard]] const Answer* answer_to(const std::string& id, const std::string& process) const;
@@ -61,6 +83,9 @@ class Live {
   [[nodiscard]] tl::unexpected<Failure> no_answer(const std::string& who) const;
 
  private:
+  [[nodiscard]] tl::expected<Answer, Failure> ask_bytes(const std::string& channel, const Bytes& request,
+                                                        const std::string& id);
+
   Site site_;
   double timeout_;
   Counters counters_;
@@ -69,6 +94,7 @@ class Live {
   std::int64_t next_id_ = 0;
   [[nodiscard]] bool is_ours(const std::string& id) const { return id.starts_with(id_prefix_) || given_.contains(id); }
 
+  std::optional<double> resolution_;  ///< of the map, as heard
   std::set<std::string> given_;
   std::map<std::string, std::map<std::string, Answer>> answers_;  ///< by id and process, the latest of each
   std::map<std::string, Path> paths_;

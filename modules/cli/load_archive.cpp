@@ -36,6 +36,17 @@ tl::unexpected<Failure> not_loaded(Live& live, const MapRequest& request) {
       merge->process + ": " + merge->message + "; ask again with --id " + request.id + " and a longer --timeout");
 }
 
+/// Somebody took a name of the file's between ingest's taking its layers and merge's taking what people made: the
+/// layers are there, and the rest comes once the name is free.
+tl::unexpected<Failure> refused_half_way(const Answer& answer, bool has_layers) {
+  auto failure = refused(answer);
+  if (has_layers) {
+    failure.value().message += "; its layers are loaded. Put that right, then ask again with --id " + answer.id +
+                               ": what people made is then added";
+  }
+  return failure;
+}
+
 }  // namespace
 
 Outcome load_archive(Live& live, const MapRequest& request, const Common& common) {
@@ -45,7 +56,8 @@ Outcome load_archive(Live& live, const MapRequest& request, const Common& common
   }
   const auto ingest = [&] { return live.answer_to(request.id, "ingest"); };
   const auto merge = [&] { return live.answer_to(request.id, "merge"); };
-  const Bytes message = encode(request, live.bus().now());
+  const auto message = to_send(request, live.bus().now());
+  if (!message) return tl::unexpected(message.error());
   const auto held = watch_layers(live);
   std::int64_t due = 0;
   live.wait_while_moving(
@@ -53,13 +65,13 @@ Outcome load_archive(Live& live, const MapRequest& request, const Common& common
       [&] {
         if (is_refusal(ingest()) || is_refusal(merge()) || (is_done(ingest()) && is_done(merge()))) return true;
         if (live.bus().now() >= due) {
-          live.bus().publish("in/map_request", message);
+          live.bus().publish("in/map_request", *message);
           due = live.bus().now() + kAskToLoadAgain;
         }
         return false;
       });
   if (is_refusal(ingest())) return refused(*ingest());
-  if (is_refusal(merge())) return refused(*merge());
+  if (is_refusal(merge())) return refused_half_way(*merge(), is_done(ingest()));
   if (!is_done(ingest()) || !is_done(merge())) return not_loaded(live, request);
   common.print({{"id", request.id}, {"ingest", to_json(*ingest())}, {"merge", to_json(*merge())}},
                "ingest: " + ingest()->message + "\nmerge: " + merge()->message);

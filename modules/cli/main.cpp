@@ -22,7 +22,9 @@ int main(int argc, char** argv) {
   concord::add_conflicts(program);
   concord::add_agent_corrections(program);
   concord::add_requests(program);
+  concord::add_goals(program);
   concord::add_saved_maps(program);
+  concord::add_align(program);
   concord::add_downsample(program);
   concord::add_publish(program);
   concord::add_map(program);

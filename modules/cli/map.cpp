@@ -24,6 +24,7 @@ Outcome take(const Options& options, const Common& common, bool only_digest) {
     return bad_name(options.agent);
   }
   Live live(common);
+  if (const auto taken = live.take_resolution(); !taken) return tl::unexpected(taken.error());
   StreamCopy copy(live, stream_of(options));
   const auto synced = options.agent.empty() ? copy.wait_synced(live) : wait_for_submap(live, copy, options.agent);
   if (!synced) return tl::unexpected(synced.error());

@@ -40,43 +40,44 @@ class Parts {
   std::int64_t last_heard_ = 0;
 };
 
-/// Something that is answered in parts.
-struct Question {
+/// Where and of whom something is asked that is answered in parts.
+struct Respondent {
   std::string channel;
-  Bytes request;
-  std::string id;                    ///< the request's
   std::string who;                   ///< the process that answers, for words
+  std::string answers;               ///< the channel of the parts
   std::int64_t silence = kAskAgain;  ///< microseconds without a part after which some are taken for lost
 };
 
-/// Asks until all parts have come on `answers`, and again only when none has come for a while: a long answer is on its
-/// way for seconds. Fails with what it was refused for, kNoAnswer, or kIncomplete.
-template <class Part>
-[[nodiscard]] tl::expected<std::vector<Part>, Failure> ask_in_parts(Live& live, const Question& question,
-                                                                    const std::string& answers) {
+/// Asks until all parts have come, and again only when none has come for a while: a long answer is on its way for
+/// seconds. Fails with what it was refused for, kNoAnswer, or kIncomplete.
+template <class Part, class Request>
+[[nodiscard]] tl::expected<std::vector<Part>, Failure> ask_in_parts(Live& live, const Respondent& respondent,
+                                                                    const Request& request) {
+  const auto bytes = to_send(request, live.bus().now());
+  if (!bytes) return tl::unexpected(bytes.error());
   const auto parts = std::make_shared<Parts<Part>>();  // the subscription outlives this call
-  live.hear<Part>(answers, [parts, id = question.id, &live](const std::string&, Part part) {
+  live.hear<Part>(respondent.answers, [parts, id = request.id, &live](const std::string&, Part part) {
     if (part.id == id) parts->take(std::move(part), live.bus().now());
   });
   const auto is_refused = [&] {
-    const Answer* answer = live.answer_to(question.id);
+    const Answer* answer = live.answer_to(request.id);
     return answer != nullptr && !answer->ok && !is_busy(*answer);
   };
   std::int64_t asked = 0;
   live.wait(live.timeout(), [&] {
     const std::int64_t now = live.bus().now();
     if (parts->complete() || is_refused()) return true;
-    if (now - std::max(asked, parts->last_heard()) > question.silence) {
-      live.bus().publish(question.channel, question.request);
+    if (now - std::max(asked, parts->last_heard()) > respondent.silence) {
+      live.bus().publish(respondent.channel, *bytes);
       asked = now;
     }
     return false;
   });
-  if (is_refused()) return refused(*live.answer_to(question.id));
+  if (is_refused()) return refused(*live.answer_to(request.id));
   if (!parts->any()) {
-    const Answer* answer = live.answer_to(question.id);
+    const Answer* answer = live.answer_to(request.id);
     if (answer != nullptr && !answer->ok) return refused(*answer);  // busy all the time
-    return live.no_answer(question.who);
+    return live.no_answer(respondent.who);
   }
   if (!parts->complete()) {
     return fail(Exit::kIncomplete, "INCOMPLETE", "parts of the answer did not arrive; give a longer --timeout");

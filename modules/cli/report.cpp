@@ -1,5 +1,8 @@
 #include "cli/report.hpp"
 
+#include <pwd.h>
+#include <unistd.h>
+
 #include <cstdlib>
 #include <memory>
 
@@ -23,14 +26,24 @@ tl::expected<AgentList, Failure> hear_agents(Live& live) {
 
 std::string author_or_user(const std::string& author) {
   if (!author.empty()) return author;
-  const char* user = std::getenv("USER");
-  return user != nullptr && is_name(user) ? user : "cli";
+  const auto is_usable = [](const char* name) { return name != nullptr && *name != '\0' && is_author(name); };
+  if (const char* user = std::getenv("USER"); is_usable(user)) return user;
+  // $USER is no more than a shell's habit: programs that are started otherwise lack it.
+  const passwd* login = getpwuid(getuid());
+  if (login != nullptr && is_usable(login->pw_name)) return login->pw_name;
+  return "uid-" + std::to_string(getuid());
 }
 
 tl::unexpected<Failure> bad_name(const std::string& name) {
-  return fail(Exit::kUnusable, "BAD_NAME",
-              name + " is no name: 1 to 40 of A-Z a-z 0-9 . _ -, beginning with a letter or digit");
+  return fail(Exit::kUnusable, "BAD_NAME", "'" + name + "' is no name: " + kNameRule);
 }
+
+Result<void> check_id(const std::string& id) {
+  if (is_request_id(id)) return {};
+  return refuse(Code::kBadName, "'" + id + "' is no id: " + kIdRule);
+}
+
+Result<void> check_own_id(const std::string& id) { return id.empty() ? Result<void>() : check_id(id); }
 
 Outcome print_answer(const tl::expected<Answer, Failure>& answer, const Common& common) {
   if (!answer) return tl::unexpected(answer.error());
@@ -84,10 +97,11 @@ nlohmann::json to_json(const Answer& answer) {
 }
 
 std::string to_words(const Path& path) {
-  if (path.status != "OK") return path.status + ": " + path.message;
+  const char* kept = "; it is kept up to date until the robot's next goal (concord paths)";
+  const char* tried = "; it is tried again as the map changes, until the robot's next goal (concord paths)";
+  if (path.status != "OK") return path.status + ": " + path.message + (path.active ? tried : "");
   return "path of " + format_number(path.length, 2) + " m, " + std::to_string(path.points.size()) +
-         " points, least clearance " + format_number(path.least_clearance, 2) + " m" +
-         (path.active ? "; it is kept up to date" : "");
+         " points, least clearance " + format_number(path.least_clearance, 2) + " m" + (path.active ? kept : "");
 }
 
 Exit print_path(const Path& path, const Common& common) {

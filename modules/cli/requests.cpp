@@ -13,12 +13,6 @@ struct Alignment {
   std::string agent, transform, frame, author;
 };
 
-struct Goal {
-  std::string robot;
-  std::vector<double> to;
-  double radius = 0.0;  ///< 0: the site file's
-};
-
 Outcome set_transform(const Alignment& alignment, const Common& common) {
   if (!is_name(alignment.agent)) return bad_name(alignment.agent);
   const auto T_map_agent = parse_transform(alignment.transform);
@@ -26,16 +20,7 @@ Outcome set_transform(const Alignment& alignment, const Common& common) {
   Live live(common);
   const TransformRequest request{live.new_id(), author_or_user(alignment.author), alignment.agent, alignment.frame,
                                  *T_map_agent};
-  return print_revision(live.ask("in/transform", encode(request, live.bus().now()), request.id), common);
-}
-
-Outcome send_to(const Goal& goal, const Common& common) {
-  PathRequest request;
-  request.robot = goal.robot;
-  request.goal = {goal.to[0], goal.to[1]};
-  request.radius = goal.radius;
-  request.keep_active = true;
-  return ask_path(std::move(request), common);
+  return print_revision(live.ask("in/transform", request), common);
 }
 
 void add_agent_request(Program& program, const std::string& name, const std::string& what, AgentRequest::Op op) {
@@ -46,23 +31,13 @@ void add_agent_request(Program& program, const std::string& name, const std::str
              if (!is_name(*agent)) return bad_name(*agent);
              Live live(common);
              const AgentRequest request{live.new_id(), *agent, op};
-             return print_answer(live.ask("in/agent_request", encode(request, live.bus().now()), request.id), common);
+             return print_answer(live.ask("in/agent_request", request), common);
            })
       .add_option("agent", *agent, "the agent's id")
       ->required();
 }
 
 }  // namespace
-
-Outcome ask_path(PathRequest request, const Common& common) {
-  if (!is_name(request.robot)) return bad_name(request.robot);
-  if (!request.goal.allFinite()) return fail(Exit::kUnusable, "NOT_FINITE", "the goal must be two finite numbers");
-  Live live(common);
-  request.id = live.new_id();
-  const auto path = request_path(live, request);
-  if (!path) return tl::unexpected(path.error());
-  return print_path(*path, common);
-}
 
 void add_requests(Program& program) {
   auto alignment = std::make_shared<Alignment>();
@@ -72,13 +47,6 @@ void add_requests(Program& program) {
   align.add_option("transform", alignment->transform, "T_map_agent as \"x y z qx qy qz qw\"")->required();
   align.add_option("--frame", alignment->frame, "the agent's frame it was found for; without it the present one");
   align.add_option("--author", alignment->author, "who asks; without it $USER");
-
-  auto goal = std::make_shared<Goal>();
-  CLI::App& go = program.add("goal", "sends a robot's path, and keeps it up to date",
-                             [goal](const Common& common) { return send_to(*goal, common); });
-  go.add_option("robot", goal->robot, "its last pose is the start")->required();
-  go.add_option("goal", goal->to, "x y, map frame, metres")->expected(2)->required();
-  go.add_option("--radius", goal->radius, "of the robot, metres; without it the site file's")->check(kRobotRadius);
 
   add_agent_request(program, "reset", "drops what an agent sent; it begins anew", AgentRequest::Op::kReset);
   add_agent_request(program, "remove", "forgets an agent and what it sent", AgentRequest::Op::kRemove);

@@ -24,7 +24,7 @@ Outcome save_map(const Save& save, const Common& common) {
   if (!is_name(save.map)) return bad_name(save.map);
   Live live(common);
   const MapRequest request{live.new_id(), MapRequest::Op::kSave, save.map, save.format, save.overwrite, ""};
-  return print_answer(live.ask("in/map_request", encode(request, live.bus().now()), request.id), common);
+  return print_answer(live.ask("in/map_request", request), common);
 }
 
 tl::expected<MapList, Failure> request_list(Live& live) {
@@ -37,7 +37,9 @@ tl::expected<MapList, Failure> request_list(Live& live) {
     const Answer* answer = live.answer_to(request.id);
     return list->has_value() || (answer != nullptr && !answer->ok);
   };
-  if (!live.ask_until("in/map_request", encode(request, live.bus().now()), live.timeout(), done)) {
+  const auto bytes = to_send(request, live.bus().now());
+  if (!bytes) return tl::unexpected(bytes.error());
+  if (!live.ask_until("in/map_request", *bytes, live.timeout(), done)) {
     return live.no_answer("merge");
   }
   if (!*list) return refused(*live.answer_to(request.id));
@@ -55,9 +57,8 @@ std::string best_format(const MapList& list, const std::string& map) {
 }
 
 Outcome load(const Load& load, const Common& common) {
-  for (const std::string& name : {load.agent, load.id}) {
-    if (!name.empty() && !is_name(name)) return bad_name(name);
-  }
+  if (const auto fine = check_own_id(load.id); !fine) return fail(fine.error());
+  if (!load.agent.empty() && !is_name(load.agent)) return bad_name(load.agent);
   if (!is_name(load.map)) return bad_name(load.map);
   Live live(common);
   MapRequest request{live.id_or_new(load.id), MapRequest::Op::kLoad, load.map, load.format, false, load.agent};
@@ -67,7 +68,7 @@ Outcome load(const Load& load, const Common& common) {
     request.format = best_format(*list, load.map);
   }
   if (request.format == "concord") return load_archive(live, request, common);
-  const auto answer = live.ask("in/map_request", encode(request, live.bus().now()), request.id);
+  const auto answer = live.ask("in/map_request", request);
   if (!answer) return tl::unexpected(answer.error());
   const std::string& agent = request.agent.empty() ? request.map : request.agent;
   nlohmann::json object = to_json(*answer);

@@ -28,9 +28,9 @@ ZoneRequest::Op op_of(const std::string& word) {
 
 /// The part of a request that says what the zone is.
 Result<void> describe(const Options& options, ZoneRequest& request) {
-  if (!is_title(options.name)) {
-    return refuse(Code::kBadName,
-                  "a zone's name has 1 to 80 printable characters without slashes, no space at its ends");
+  // Whatever a zone that is there was called, it can be changed and deleted.
+  if (request.op == ZoneRequest::Op::kAdd && !is_title(options.name)) {
+    return refuse(Code::kBadName, std::string("a zone's name is ") + kTitleRule);
   }
   if (request.op == ZoneRequest::Op::kDelete) {
     if (!options.no_go && !options.allow_contact && !is_given(options.selection)) return {};
@@ -42,7 +42,7 @@ Result<void> describe(const Options& options, ZoneRequest& request) {
 }
 
 Outcome zone(const Options& options, const Common& common) {
-  if (!options.id.empty() && !is_name(options.id)) return bad_name(options.id);
+  if (const auto fine = check_own_id(options.id); !fine) return fail(fine.error());
   ZoneRequest request;
   request.op = op_of(options.op);
   if (const auto described = describe(options, request); !described) return fail(described.error());
@@ -53,7 +53,7 @@ Outcome zone(const Options& options, const Common& common) {
   request.frame = options.selection.frame;
   request.base_revision = options.base_revision;
   request.utime = live.bus().now();
-  return print_revision(live.ask("in/zone", encode(request), request.id), common);
+  return print_revision(live.ask("in/zone", request), common);
 }
 
 Outcome zones(const Common& common) {

@@ -9,19 +9,11 @@
 namespace concord {
 namespace {
 
-constexpr std::size_t kLongestAuthor = 80;  // bytes
-constexpr double kRotationError = 1e-6;
-constexpr double kFarthestPlacement = 10'000.0;  // metres, as make_transform takes
-
 Result<void> check_transform(const Transform& T) {
-  const Eigen::Matrix3d R = T.linear();
-  if (!R.allFinite() || !T.translation().allFinite()) {
+  if (!T.linear().allFinite() || !T.translation().allFinite()) {
     return refuse(Code::kNotFinite, "transform has a component that is not finite");
   }
-  const double error = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (!(error < kRotationError) || R.determinant() < 0) {
-    return refuse(Code::kBadTransform, "transform is no rotation and translation");
-  }
+  if (!is_rotation(T.linear())) return refuse(Code::kBadTransform, "transform is no rotation and translation");
   if (T.translation().cwiseAbs().maxCoeff() > kFarthestPlacement) {
     return refuse(Code::kBadTransform, "translation is over 10 km; is it in metres?");
   }
@@ -30,7 +22,7 @@ Result<void> check_transform(const Transform& T) {
 
 Result<void> check_agent(const std::string& agent) {
   if (is_name(agent)) return {};
-  return refuse(Code::kBadName, "an agent's id is 1 to 40 of A-Z a-z 0-9 . _ -");
+  return refuse(Code::kBadName, std::string("an agent's id is ") + kNameRule);
 }
 
 Result<void> check_voxels(const std::vector<VoxelIndex>& voxels) {
@@ -105,7 +97,8 @@ struct CorrectionCheck::Follow {
 
   Result<void> operator()(const Correction::Undo& undo) const {
     const auto edit = list.edits_.find(undo.edit_id);
-    if (edit == list.edits_.end()) return refuse(Code::kNotFound, "no edit before this is called " + undo.edit_id);
+    if (edit == list.edits_.end())
+      return refuse(Code::kNotFound, "no edit or placement before this is called " + undo.edit_id);
     if (edit->second == undo.redo) {
       return refuse(Code::kConflict, "edit " + undo.edit_id + (undo.redo ? " was not undone" : " is undone already"));
     }
@@ -115,7 +108,9 @@ struct CorrectionCheck::Follow {
 
   Result<void> operator()(const Correction::ZoneChange& change) const {
     const Zone& zone = change.zone;
-    if (!is_title(zone.name)) return refuse(Code::kBadName, "a zone's name is 1 to 80 printable bytes without slashes");
+    if (!is_kept_title(zone.name)) {
+      return refuse(Code::kBadName, "a zone's name is one line of 1 to 80 bytes without slashes");
+    }
     const bool is_there = list.zones_.contains(zone.name);
     const bool adds = change.op == ZoneRequest::Op::kAdd;
     if (adds && is_there) return refuse(Code::kExists, "there is a zone called " + zone.name);
@@ -135,8 +130,10 @@ struct CorrectionCheck::Follow {
 
   Result<void> operator()(const Correction::Placement& placement) const {
     if (auto fine = check_agent(placement.agent); !fine) return fine;
-    if (!is_name(placement.frame_id)) return refuse(Code::kBadName, "frame_id must be 1 to 40 of A-Z a-z 0-9 . _ -");
-    return check_transform(placement.T_map_agent);
+    if (!is_name(placement.frame_id)) return refuse(Code::kBadName, std::string("frame_id must be ") + kNameRule);
+    if (auto fine = check_transform(placement.T_map_agent); !fine) return fine;
+    list.edits_.emplace(id, true);
+    return {};
   }
 
   Result<void> operator()(const Correction::Weight& weight) const {
@@ -149,10 +146,8 @@ struct CorrectionCheck::Follow {
 Result<void> CorrectionCheck::take(const Correction& correction) {
   const auto& [revision, id, author, utime, content, what] = correction;
   if (revision <= revision_) return refuse(Code::kStale, "revisions must ascend, from 1");
-  if (!is_request_id(id)) return refuse(Code::kBadName, "an id must be 1 to 80 printable characters");
-  if (author.size() > kLongestAuthor || !is_printable(author)) {
-    return refuse(Code::kBadName, "author must be at most 80 printable characters");
-  }
+  if (!is_kept_id(id)) return refuse(Code::kBadName, "an id must be one line of 1 to 80 bytes");
+  if (!is_kept_author(author)) return refuse(Code::kBadName, "author must be one line of at most 80 bytes");
   if (utime < 0) return refuse(Code::kBadRequest, "a time before 1970");
   if (ids_.contains(id)) return refuse(Code::kExists, "another correction has the id " + id);
   if (auto fine = std::visit(Follow{*this, id}, what); !fine) return fine;

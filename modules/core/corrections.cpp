@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "core/text.hpp"
-
 namespace concord {
 namespace {
 
@@ -52,6 +50,12 @@ struct Summarise {
 
 }  // namespace
 
+std::optional<Kind> operation_called(std::string_view name) {
+  const auto* known = std::ranges::find(kOperationNames, name);
+  if (known == kOperationNames.end()) return std::nullopt;
+  return static_cast<Kind>(known - kOperationNames.begin());
+}
+
 Operation summary(const Correction& correction, bool active) {
   Operation out;
   out.revision = correction.revision;
@@ -61,11 +65,6 @@ Operation summary(const Correction& correction, bool active) {
   out.active = active;
   std::visit(Summarise{out}, correction.what);
   return out;
-}
-
-bool is_title(std::string_view text) {
-  return !text.empty() && text.size() <= 80 && text.front() != ' ' && text.back() != ' ' &&
-         text.find_first_of("/\\") == text.npos && is_printable(text);
 }
 
 }  // namespace concord

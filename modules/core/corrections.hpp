@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -9,6 +10,7 @@
 
 #include "core/lattice.hpp"
 #include "core/shape.hpp"
+#include "core/text.hpp"
 #include "core/transform.hpp"
 
 namespace concord {
@@ -45,7 +47,7 @@ struct EditRequest {
   std::int64_t utime = 0;
 };
 
-/// Takes an edit back, or brings it back.
+/// Takes an edit or a placement back, or brings it back.
 struct UndoRequest {
   std::string id;
   std::string author;
@@ -57,7 +59,7 @@ struct UndoRequest {
 /// A volume that people fenced off, or opened to contact, for planning. Map data, not a rated safety function.
 struct Zone {
   enum class Kind { kNoGo, kAllowContact };
-  std::string name;  ///< is_title; unique
+  std::string name;  ///< is_title when it was made; unique
   Kind kind = Kind::kNoGo;
   Volume volume;
   Transform T_map_zone = Transform::Identity();
@@ -88,12 +90,13 @@ struct Lease {
   std::int64_t until = 0;  ///< microseconds since 1970
 };
 
-/// Holding again with the same id renews it, and may move it.
+/// Holding the same lease again renews it, and may move it.
 struct LeaseRequest {
   std::string id;
   std::string author;
-  bool hold = true;  ///< false: it is freed
-  Volume volume;     ///< not heeded when it is freed
+  std::string lease;  ///< its id, which its author shares with others
+  bool hold = true;   ///< false: it is freed
+  Volume volume;      ///< not heeded when it is freed
   WorkFrame frame;
   std::int64_t utime = 0;
 };
@@ -177,9 +180,20 @@ struct Operation {
   Kind kind = Kind::kAdd;
   std::string subject;     ///< the edit undone or redone, the zone, the agent; empty for an edit
   std::int64_t count = 0;  ///< voxels that an edit pins
-  bool active = true;      ///< false for an edit that is undone now
+  bool active = true;      ///< false for an edit or placement that is undone now
   VoxelIndex min, max;     ///< of what an edit pins
 };
+
+/// By its kind's number, as stores keep it: "zone_add".
+inline constexpr std::array<std::string_view, 10> kOperationNames{
+    "add", "delete", "move", "undo", "redo", "zone_add", "zone_change", "zone_delete", "transform", "weight"};
+static_assert(kOperationNames.size() == static_cast<std::size_t>(Operation::Kind::kWeight) + 1);
+[[nodiscard]] constexpr std::string_view name(Operation::Kind kind) {
+  return kOperationNames[static_cast<std::size_t>(kind)];
+}
+[[nodiscard]] std::optional<Operation::Kind> operation_called(std::string_view name);
+/// Whether it pins voxels.
+[[nodiscard]] constexpr bool is_edit(Operation::Kind kind) { return kind <= Operation::Kind::kMove; }
 
 /// @param active whether it is an edit that is not undone; true for anything else.
 [[nodiscard]] Operation summary(const Correction& correction, bool active);
@@ -195,9 +209,11 @@ struct HistoryRequest {
   int most = 1000;  ///< 1 to 10000; the oldest first
 };
 
+inline constexpr int kMostConflictRegions = 1'000;  ///< of one list
+
 struct ConflictRequest {
   std::string id;
-  int most = 100;  ///< 1 to 1000 regions, those with the most conflicting voxels first
+  int most = 100;  ///< 1 to kMostConflictRegions, those with the most conflicting voxels first
 };
 
 /// Conflicting voxels within one tile of the map, and what each agent says of them.
@@ -211,8 +227,5 @@ struct ConflictRegion {
   int voxels = 0;
   std::vector<Claim> claims;  ///< of agents that know any of them, in the order of their ids
 };
-
-/// Titles are for people: 1 to 80 bytes of printable UTF-8 without slashes, not beginning or ending with a space.
-[[nodiscard]] bool is_title(std::string_view text);
 
 }  // namespace concord

@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "core/lattice.hpp"
+#include "core/text.hpp"
 #include "core/transform.hpp"
 
 namespace concord {
@@ -22,6 +22,7 @@ struct TransformRequest {
   std::string agent;
   std::string frame_id;  ///< the agent's frame it was found for; empty: the present one
   Transform T_map_agent = Transform::Identity();
+  std::int64_t utime = 0;  ///< when it was asked
 };
 
 /// Ends what an agent has sent: `kReset` keeps the agent and waits for a new frame, `kRemove` forgets it.
@@ -47,7 +48,8 @@ struct MapRequest {
   std::string map;     ///< name without extension
   std::string format;  ///< "bt", "ot" or "concord"; empty with kLoad: whichever exists
   bool overwrite = false;
-  std::string agent;  ///< with kLoad; empty: the map's name
+  std::string agent;       ///< with kLoad; empty: the map's name
+  std::int64_t utime = 0;  ///< when it was asked
 };
 
 /// Asks for a path on the grid. With `keep_active` it is replanned whenever a change of the map touches it.
@@ -107,9 +109,5 @@ struct AgentState {
   std::int64_t revision = 0;
   bool synced = false;  ///< all that its stream has announced has arrived
 };
-
-/// Ids, frames and map names: 1 to 40 of [A-Za-z0-9._-], starting with a letter or digit.
-/// Such a name is safe as a file name and inside a channel name.
-[[nodiscard]] bool is_name(std::string_view text);
 
 }  // namespace concord

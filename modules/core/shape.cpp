@@ -198,6 +198,30 @@ bool contains(const Volume& volume, const Transform& T_map_frame, const Eigen::V
 
 namespace {
 
+struct CornersOf {
+  std::vector<Eigen::Vector3d> operator()(const Box& box) const {
+    std::vector<Eigen::Vector3d> corners;
+    for (int i = 0; i < 8; ++i) {
+      const auto end = [&](int axis) { return (i >> axis & 1) != 0 ? box.max[axis] : box.min[axis]; };
+      corners.emplace_back(end(0), end(1), end(2));
+    }
+    return corners;
+  }
+  std::vector<Eigen::Vector3d> operator()(const OrientedBox& box) const {
+    std::vector<Eigen::Vector3d> corners = (*this)(Box{-0.5 * box.size, 0.5 * box.size});
+    for (Eigen::Vector3d& corner : corners) corner = box.T_frame_box * corner;
+    return corners;
+  }
+  std::vector<Eigen::Vector3d> operator()(const Prism& prism) const {
+    std::vector<Eigen::Vector3d> corners;
+    for (const Eigen::Vector2d& p : prism.points) {
+      corners.emplace_back(p.x(), p.y(), prism.low);
+      corners.emplace_back(p.x(), p.y(), prism.high);
+    }
+    return corners;
+  }
+};
+
 Result<VoxelRuns> ground_runs(const Volume& volume, const Transform& T_map_frame, double resolution, double zmin,
                               double zmax, std::int64_t most) {
   if (auto fine = check_placing(T_map_frame, resolution); !fine) return tl::unexpected(fine.error());
@@ -212,6 +236,8 @@ Result<VoxelRuns> ground_runs(const Volume& volume, const Transform& T_map_frame
 }
 
 }  // namespace
+
+std::vector<Eigen::Vector3d> corners(const Volume& volume) { return std::visit(CornersOf{}, volume); }
 
 Result<std::vector<VoxelIndex>> footprint(const Volume& volume, const Transform& T_map_frame, double resolution,
                                           double zmin, double zmax, std::int64_t most) {

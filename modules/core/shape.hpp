@@ -79,6 +79,9 @@ using Volume = std::variant<Box, OrientedBox, Prism>;
 [[nodiscard]] Result<std::vector<VoxelIndex>> select(const Shape& shape, const Transform& T_map_frame,
                                                      double resolution, std::int64_t most);
 
+/// Points of the volume's frame whose hull holds it, and which lie on it.
+[[nodiscard]] std::vector<Eigen::Vector3d> corners(const Volume& volume);
+
 /// Whether a point of the map lies in a volume or within a micrometre of it. @pre check(volume).
 [[nodiscard]] bool contains(const Volume& volume, const Transform& T_map_frame, const Eigen::Vector3d& p_map);
 

@@ -8,8 +8,6 @@
 namespace concord {
 namespace {
 
-constexpr double kRotationError = 1e-6;
-
 Result<void> check_point(const Eigen::Vector3d& p) {
   if (!p.allFinite()) return refuse(Code::kNotFinite, "a coordinate of the shape is not finite");
   if (p.cwiseAbs().maxCoeff() > kFarthest) {
@@ -81,8 +79,7 @@ struct Check {
   Result<void> operator()(const OrientedBox& box) const {
     const Eigen::Matrix3d R = box.T_frame_box.linear();
     if (!R.allFinite()) return refuse(Code::kNotFinite, "the box's rotation is not finite");
-    const double error = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-    if (!(error < kRotationError) || R.determinant() < 0) {
+    if (!is_rotation(R)) {
       return refuse(Code::kBadTransform, "the box's transform is no rotation and translation");
     }
     Result<void> result = check_point(box.T_frame_box.translation());

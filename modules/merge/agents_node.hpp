@@ -35,8 +35,8 @@ class AgentsNode {
   /// People placed it, or gave it another weight.
   void follow(const std::string& id);
 
-  /// Every layer that people had put into the map before this start is whole again, or nothing more has arrived for so
-  /// long that they need not be waited for.
+  /// Every layer that people had put into the map before this start is whole again or, as ingest says of none of them,
+  /// gone; or nothing more has arrived for so long that they need not be waited for.
   [[nodiscard]] bool has_all_that_was_aligned() const;
 
   /// Whether the layers are all there is, as a saved map must hold them. Refused (kBusy): ingest has not been heard for
@@ -65,7 +65,10 @@ class AgentsNode {
 
   void listen();
   Agent* agent_called(const std::string& id, const std::string& channel);
-  [[nodiscard]] bool has_room();
+  [[nodiscard]] bool make_room();
+  void on_ingest(const ProcessStatus& status);
+  /// Ingest speaks, and has for so long that all its agents were heard.
+  [[nodiscard]] bool all_heard() const;
   BrickReceiver* stream_of_channel(const std::string& channel);
   void open_stream(const std::string& id, Agent& agent);
   void enter_frame(const std::string& id, Agent& agent, const std::string& frame_id);
@@ -84,9 +87,12 @@ class AgentsNode {
   const People& people_;
   MapStreams& map_;
   std::map<std::string, Agent> agents_;
-  std::set<std::string> awaited_;             ///< had a layer in the map before this start
-  std::int64_t last_arrival_;                 ///< of a brick, while the map is held back
-  std::optional<std::int64_t> ingest_heard_;  ///< first
+  std::set<std::string> awaited_;  ///< had a layer in the map before this start
+  std::int64_t last_arrival_;      ///< of a brick, while the map is held back
+  struct Ingest {
+    std::int64_t boot_id, first, last;  ///< heard, without a long silence between
+  };
+  std::optional<Ingest> ingest_;
 };
 
 }  // namespace concord

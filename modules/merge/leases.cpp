@@ -14,26 +14,34 @@ constexpr std::int64_t kMostLooks = 1'000'000;
 
 constexpr double kSlack = 1e-6;  ///< metres: corners that were turned are not exactly where they were
 
-tl::unexpected<Error> locked_by(const Lease& lease) {
-  return refuse(Code::kLocked, lease.author + " works there; ask them, or again in some seconds");
+/// Who has it, what it is called, and how long they have to be waited for.
+std::string words_for(const Lease& lease, std::int64_t now) {
+  const std::int64_t seconds = std::max<std::int64_t>((lease.until - now + 999'999) / 1'000'000, 1);
+  const std::string who = lease.author.empty() ? "somebody without a name" : lease.author;
+  return who + " holds lease '" + lease.id + "' for " + std::to_string(seconds) + " s more, longer if it is renewed";
+}
+
+tl::unexpected<Error> locked_by(const Lease& lease, std::int64_t now) {
+  return refuse(Code::kLocked, words_for(lease, now) + "; ask them, or again then");
 }
 
 }  // namespace
 
 Result<Lease> Leases::check(const LeaseRequest& request, const Transform& T_map_frame, std::int64_t now) const {
-  const auto same = held_.find(request.id);
+  const auto same = held_.find(request.lease);
   if (same != held_.end() && same->second.bars(request.author, now)) {
-    return refuse(Code::kLocked, "this lease is " + same->second.lease.author + "'s; choose another id");
+    return refuse(Code::kLocked, words_for(same->second.lease, now) + "; choose another id");
   }
   const auto there = std::ranges::count_if(held_, [&](const auto& entry) { return entry.second.lease.until > now; });
   if (same == held_.end() && there >= static_cast<std::ptrdiff_t>(kMaxLeases)) {
     return refuse(Code::kBusy, "all " + std::to_string(kMaxLeases) + " leases are held; ask again in some seconds");
   }
   const auto own = std::ranges::count_if(held_, [&](const auto& entry) {
-    return entry.first != request.id && entry.second.lease.author == request.author && entry.second.lease.until > now;
+    return entry.first != request.lease && entry.second.lease.author == request.author &&
+           entry.second.lease.until > now;
   });
   if (own >= kMaxLeasesOfOne) {
-    return refuse(Code::kTooLarge, "one person may hold " + std::to_string(kMaxLeasesOfOne) + " leases; free one");
+    return refuse(Code::kBusy, "one person may hold " + std::to_string(kMaxLeasesOfOne) + " leases; free one");
   }
   const Eigen::AlignedBox3d bounds = bounds_in_map(request.volume, T_map_frame);
   if (!(bounds.sizes().maxCoeff() <= kMaxLeaseSide + kSlack)) {
@@ -41,7 +49,7 @@ Result<Lease> Leases::check(const LeaseRequest& request, const Transform& T_map_
   }
   const auto free = check(bounds, request.author, now);
   if (!free) return tl::unexpected(free.error());
-  return Lease{request.id, request.author, request.volume, T_map_frame, now + kLeaseTime};
+  return Lease{request.lease, request.author, request.volume, T_map_frame, now + kLeaseTime};
 }
 
 void Leases::hold(Lease lease) {
@@ -52,9 +60,9 @@ void Leases::hold(Lease lease) {
 }
 
 Result<bool> Leases::free(const LeaseRequest& request, std::int64_t now) {
-  const auto it = held_.find(request.id);
+  const auto it = held_.find(request.lease);
   if (it == held_.end()) return false;
-  if (it->second.bars(request.author, now)) return locked_by(it->second.lease);
+  if (it->second.bars(request.author, now)) return locked_by(it->second.lease, now);
   held_.erase(it);
   return true;
 }
@@ -68,7 +76,7 @@ Result<void> Leases::check(const PinnedBricks& voxels, const std::string& author
   for (const auto& [id, held] : held_) {
     if (!held.bars(author, now)) continue;
     for (const auto& [index, pins] : voxels) {
-      if (may_hold(held, index) && holds_any(held, index, pins, looks)) return locked_by(held.lease);
+      if (may_hold(held, index) && holds_any(held, index, pins, looks)) return locked_by(held.lease, now);
     }
   }
   return {};
@@ -97,7 +105,7 @@ bool Leases::holds_any(const Held& held, BrickIndex index, const PinBrick& pins,
 
 Result<void> Leases::check(const Eigen::AlignedBox3d& bounds, const std::string& author, std::int64_t now) const {
   for (const auto& [id, held] : held_) {
-    if (held.bars(author, now) && overlap(held.bounds, bounds)) return locked_by(held.lease);
+    if (held.bars(author, now) && overlap(held.bounds, bounds)) return locked_by(held.lease, now);
   }
   return {};
 }

@@ -17,20 +17,8 @@ namespace {
 
 using Kind = Operation::Kind;
 
-/// As they are stored; by the enum's order.
-constexpr std::array<std::string_view, 10> kKinds{"add",      "delete",      "move",        "undo",      "redo",
-                                                  "zone_add", "zone_change", "zone_delete", "transform", "weight"};
 constexpr const char* kNoGo = "no_go";
 constexpr const char* kAllowContact = "allow_contact";
-
-std::string_view text_of(Kind kind) { return kKinds[static_cast<std::size_t>(kind)]; }
-
-std::optional<Kind> kind_of(std::string_view text) {
-  for (std::size_t i = 0; i < kKinds.size(); ++i) {
-    if (kKinds[i] == text) return static_cast<Kind>(i);
-  }
-  return std::nullopt;
-}
 
 Bytes to_bytes(const std::vector<VoxelIndex>& voxels) {
   Bytes out;
@@ -124,7 +112,7 @@ Result<void> MergeStore::put(std::span<const Correction> corrections) {
 
 Result<void> MergeStore::put_one(const Correction& correction) {
   const Operation row = summary(correction, true);
-  const auto done = put_correction_.run(row.revision, row.id, row.author, row.utime, text_of(row.kind), row.subject,
+  const auto done = put_correction_.run(row.revision, row.id, row.author, row.utime, name(row.kind), row.subject,
                                         static_cast<std::int64_t>(correction.content));
   if (!done) return done;
   return std::visit(PutDetail{*this, correction.revision}, correction.what);
@@ -230,7 +218,7 @@ Result<void> MergeStore::for_each(const std::function<Result<void>(Correction)>&
     Correction correction{
         rows.integer(0),   rows.text(1), rows.text(2), rows.integer(3), static_cast<std::uint64_t>(rows.integer(6)),
         Correction::Undo{}};
-    const auto kind = kind_of(rows.text(4));
+    const auto kind = operation_called(rows.text(4));
     if (!kind) return damaged("a kind of correction called " + rows.text(4));
     if (const auto read = readers.read(*kind, rows.text(5), correction); !read) return read;
     if (const auto visited = visit(std::move(correction)); !visited) return visited;

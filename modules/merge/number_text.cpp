@@ -62,10 +62,6 @@ std::optional<std::vector<double>> numbers_in(std::string_view text) {
   return std::nullopt;
 }
 
-bool is_rotation(const Eigen::Matrix3d& R) {
-  return (R * R.transpose()).isApprox(Eigen::Matrix3d::Identity(), 1e-9) && R.determinant() > 0;
-}
-
 Eigen::Vector3d vector_at(const std::vector<double>& n, std::size_t i) { return {n[i], n[i + 1], n[i + 2]}; }
 
 Eigen::Matrix3d matrix_at(const std::vector<double>& n, std::size_t i) {

@@ -7,29 +7,11 @@ namespace {
 
 constexpr double kTouch = 1e-6;  ///< metres: nearer is the same place
 
-struct Corners {
-  const Transform& T_map_frame;
-  Eigen::AlignedBox3d& out;
-
-  void operator()(const Box& box) const { add({box.min, box.max}, T_map_frame); }
-  void operator()(const OrientedBox& box) const {
-    add({-0.5 * box.size, 0.5 * box.size}, T_map_frame * box.T_frame_box);
-  }
-  void operator()(const Prism& prism) const {
-    for (const Eigen::Vector2d& p : prism.points) {
-      for (const double z : {prism.low, prism.high}) out.extend(T_map_frame * Eigen::Vector3d(p.x(), p.y(), z));
-    }
-  }
-  void add(const Eigen::AlignedBox3d& box, const Transform& T) const {
-    for (int i = 0; i < 8; ++i) out.extend(T * box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)));
-  }
-};
-
 }  // namespace
 
 Eigen::AlignedBox3d bounds_in_map(const Volume& volume, const Transform& T_map_frame) {
   Eigen::AlignedBox3d box;
-  std::visit(Corners{T_map_frame, box}, volume);
+  for (const Eigen::Vector3d& corner : corners(volume)) box.extend(T_map_frame * corner);
   return box;
 }
 

@@ -39,7 +39,9 @@ BrickMap noisy_building(std::int64_t voxels) {
     if ((word & bit) == 0) ++count;
     word |= bit;
   };
-  const auto noise = [&] { return static_cast<std::int32_t>(random() % 8 == 0) - static_cast<std::int32_t>(random() % 8 == 0); };
+  const auto noise = [&] {
+    return static_cast<std::int32_t>(random() % 8 == 0) - static_cast<std::int32_t>(random() % 8 == 0);
+  };
   const auto seen = [&] { return random() % 10 != 0; };
   constexpr std::int32_t kRoom = 120, kHeight = 56;
   for (std::int32_t room = 0; count < voxels; ++room) {
@@ -82,7 +84,8 @@ std::unique_ptr<TlsClient> enter(std::uint16_t port) {
   hello.device = "bench";
   client->send_text(request_text(1, hello));
   client->send_text(notice_text(CreditNotice{std::int64_t{1} << 50}));
-  if (!client->read_text([](const std::string& t) { return says(t, "\"answer\""); })) throw std::runtime_error("no hello");
+  if (!client->read_text([](const std::string& t) { return says(t, "\"answer\""); }))
+    throw std::runtime_error("no hello");
   return client;
 }
 
@@ -137,7 +140,8 @@ double percentile95(std::vector<double> values) {
 /// Ten times a second until `stop`: how long from a message to its answer.
 template <class Once>
 void ten_a_second(std::vector<double>& acks, const Stop& stop, Once once) {
-  for (auto due = Clock::now(); stop.wait_until(due) == std::future_status::timeout; due += std::chrono::milliseconds(100)) {
+  for (auto due = Clock::now(); stop.wait_until(due) == std::future_status::timeout;
+       due += std::chrono::milliseconds(100)) {
     const auto start = Clock::now();
     once();
     acks.push_back(seconds_since(start) * 1000);
@@ -160,12 +164,17 @@ int run(int clients, int rounds, std::int64_t voxels, bool json) {
            .close_seconds = 5,
            .local_role = Role::kEdit,
            .others = [&](const NodeContext& context) { return std::make_shared<Stack>(context, submap); }});
-  rig.wait_for([](BridgeNode& node) { return node.world().agent("robot1") != nullptr && node.world().agent("robot1")->synced; });
+  rig.wait_for(
+      [](BridgeNode& node) { return node.world().agent("robot1") != nullptr && node.world().agent("robot1")->synced; });
   rig.in_server([](BridgeNode&, Bus& bus) {
-    bus.publish("in/transform", encode(TransformRequest{"place", "bench", "robot1", "odom", Transform::Identity()}, bus.now()));
+    bus.publish(
+        "in/transform",
+        encode(TransformRequest{"place", "bench", "robot1", "odom", Transform::Identity(), bus.now()}, bus.now()));
   });
   const std::size_t expected = submap.brick_count();
-  rig.wait_for([&](BridgeNode& node) { return node.world().map().map().brick_count() >= expected && node.world().map().synced(); });
+  rig.wait_for([&](BridgeNode& node) {
+    return node.world().map().map().brick_count() >= expected && node.world().map().synced();
+  });
 
   std::vector<std::shared_ptr<const Bytes>> frames;
   std::int64_t first_view = 0, id = 1;
@@ -209,7 +218,8 @@ int run(int clients, int rounds, std::int64_t voxels, bool json) {
     std::int64_t bytes = 0;
     for (int round = 0; round < rounds; ++round) {
       client.send_text("again");
-      for (std::size_t i = 0; i < frames.size(); ++i) bytes += static_cast<std::int64_t>(client.read(60).value().data.size());
+      for (std::size_t i = 0; i < frames.size(); ++i)
+        bytes += static_cast<std::int64_t>(client.read(60).value().data.size());
     }
     return bytes;
   };
@@ -217,7 +227,8 @@ int run(int clients, int rounds, std::int64_t voxels, bool json) {
     TlsClient client(bare.port());
     if (client.upgrade("localhost") != 101) throw std::runtime_error("no bare server");
     ten_a_second(acks, stop, [&] {
-      client.send_text(R"({"id":1,"request":"edit","body":{"op":"add","frame":"map","shape":{"kind":"voxels","resolution":0.05,"boxes":[[1,30,20,1,34,30]]}}})");
+      client.send_text(
+          R"({"id":1,"request":"edit","body":{"op":"add","frame":"map","shape":{"kind":"voxels","resolution":0.05,"boxes":[[1,30,20,1,34,30]]}}})");
       (void)client.read();
     });
   };
@@ -240,10 +251,11 @@ int run(int clients, int rounds, std::int64_t voxels, bool json) {
   if (json) {
     std::printf("%s\n", result.dump(2).c_str());
   } else {
-    std::printf("first view of %lld voxels: %lld bytes\n%d clients: %.0f MB/s, bare server %.0f MB/s: %.0f %%\n"
-                "edit answered within %.1f ms (p95), bare echo %.1f ms: %.1f times\n",
-                static_cast<long long>(voxels), static_cast<long long>(first_view), clients, bridge.bytes_per_second / 1e6,
-                plain.bytes_per_second / 1e6, share * 100, ack, echo, ack / echo);
+    std::printf(
+        "first view of %lld voxels: %lld bytes\n%d clients: %.0f MB/s, bare server %.0f MB/s: %.0f %%\n"
+        "edit answered within %.1f ms (p95), bare echo %.1f ms: %.1f times\n",
+        static_cast<long long>(voxels), static_cast<long long>(first_view), clients, bridge.bytes_per_second / 1e6,
+        plain.bytes_per_second / 1e6, share * 100, ack, echo, ack / echo);
   }
   return 0;
 }

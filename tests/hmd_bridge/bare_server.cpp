@@ -20,16 +20,18 @@ using Frames = std::vector<std::shared_ptr<const Bytes>>;
 /// As bare as Beast's own examples.
 class BareSession : public std::enable_shared_from_this<BareSession> {
  public:
-  BareSession(tcp::socket socket, asio::ssl::context& tls, const Frames& frames) : ws_(std::move(socket), tls), frames_(frames) {}
+  BareSession(tcp::socket socket, asio::ssl::context& tls, const Frames& frames)
+      : ws_(std::move(socket), tls), frames_(frames) {}
 
   void start() {
-    ws_.next_layer().async_handshake(asio::ssl::stream_base::server, [self = shared_from_this()](beast::error_code error) {
-      if (error) return;
-      self->ws_.auto_fragment(false);
-      self->ws_.async_accept([self](beast::error_code failed) {
-        if (!failed) self->read();
-      });
-    });
+    ws_.next_layer().async_handshake(asio::ssl::stream_base::server,
+                                     [self = shared_from_this()](beast::error_code error) {
+                                       if (error) return;
+                                       self->ws_.auto_fragment(false);
+                                       self->ws_.async_accept([self](beast::error_code failed) {
+                                         if (!failed) self->read();
+                                       });
+                                     });
   }
 
  private:
@@ -66,7 +68,9 @@ class BareSession : public std::enable_shared_from_this<BareSession> {
 class BareServer::Parts {
  public:
   Parts(const std::string& certificate, const std::string& key, Frames sent)
-      : frames(std::move(sent)), tls(asio::ssl::context::tls_server), acceptor(io, {asio::ip::make_address("127.0.0.1"), 0}) {
+      : frames(std::move(sent)),
+        tls(asio::ssl::context::tls_server),
+        acceptor(io, {asio::ip::make_address("127.0.0.1"), 0}) {
     tls.use_certificate_chain_file(certificate);
     tls.use_private_key_file(key, asio::ssl::context::pem);
     accept();

@@ -49,7 +49,8 @@ class Served : public testing::Test {
   }
   std::string ticket_for(const std::string& token) {
     TlsClient client(rig.port());
-    const std::string answer = client.http("POST /api/ticket HTTP/1.1\r\nHost: lab\r\nAuthorization: Bearer " + token + "\r\nContent-Length: 0\r\n\r\n");
+    const std::string answer = client.http("POST /api/ticket HTTP/1.1\r\nHost: lab\r\nAuthorization: Bearer " + token +
+                                           "\r\nContent-Length: 0\r\n\r\n");
     return status_of(answer) == 200 ? body_of(answer)["ticket"].get<std::string>() : std::to_string(status_of(answer));
   }
 
@@ -63,7 +64,8 @@ TEST_F(Served, FilesOfTheClientAndNothingElse) {
   EXPECT_EQ(body_of(info)["protocol"], "hmd.v1");
   EXPECT_FALSE(body_of(info)["ticket_needed"].get<bool>());
   EXPECT_TRUE(body_of(client.http(get("/api/info", "lab.example")))["ticket_needed"].get<bool>());
-  for (const char* target : {"/../secret.txt", "/..%2fsecret.txt", "/web/../../secret.txt", "/tokens.db", "/cert.pem", "/%00", "//etc/passwd"}) {
+  for (const char* target : {"/../secret.txt", "/..%2fsecret.txt", "/web/../../secret.txt", "/tokens.db", "/cert.pem",
+                             "/%00", "//etc/passwd"}) {
     const std::string answer = client.http(get(target));
     EXPECT_EQ(status_of(answer), 404) << target;
     EXPECT_EQ(answer.find("secret\n"), std::string::npos);
@@ -116,15 +118,18 @@ TEST_F(Served, PagesFromElsewhereAreRefused) {
 
 TEST_F(Served, WhatIsTooLargeIsRefused) {
   TlsClient header(rig.port());
-  EXPECT_NE(status_of(header.http("GET / HTTP/1.1\r\nHost: localhost\r\nX: " + std::string(20'000, 'x') + "\r\n\r\n")), 200);
+  EXPECT_NE(status_of(header.http("GET / HTTP/1.1\r\nHost: localhost\r\nX: " + std::string(20'000, 'x') + "\r\n\r\n")),
+            200);
   TlsClient body(rig.port());
-  EXPECT_NE(status_of(body.http("POST /api/ticket HTTP/1.1\r\nHost: localhost\r\nContent-Length: 1000000\r\n\r\n")), 200);
+  EXPECT_NE(status_of(body.http("POST /api/ticket HTTP/1.1\r\nHost: localhost\r\nContent-Length: 1000000\r\n\r\n")),
+            200);
   TlsClient text(rig.port());
   ASSERT_EQ(text.upgrade("localhost"), 101);
   text.send_text(request_text(1, hello_of()));
   EXPECT_EQ(outcome(text, 1), "OK");
   text.send_text("{\"id\":2," + std::string(5 << 20, ' ') + "}");
-  while (text.read(3)) {}
+  while (text.read(3)) {
+  }
   EXPECT_TRUE(text.closed());
   TlsClient binary(rig.port());
   ASSERT_EQ(binary.upgrade("localhost"), 101);
@@ -152,8 +157,10 @@ TEST_F(Served, MalformedMessagesAreToldAndAFloodOfThemEnds) {
   client.send_binary(Bytes{1, 2, 3});
   client.send_text(request_text(3, AgentsRequest{}));
   EXPECT_EQ(outcome(client, 3), "OK");
-  for (int i = 0; i < 300 && client.send_text("[[[["); ++i) {}
-  while (client.read(3)) {}
+  for (int i = 0; i < 300 && client.send_text("[[[["); ++i) {
+  }
+  while (client.read(3)) {
+  }
   EXPECT_TRUE(client.closed());
 }
 
@@ -161,8 +168,10 @@ TEST_F(Served, AFloodOfRequestsEnds) {
   TlsClient client(rig.port());
   ASSERT_EQ(client.upgrade("localhost"), 101);
   client.send_text(request_text(1, hello_of()));
-  for (int i = 2; i < 2000 && client.send_text(request_text(i, AgentsRequest{})); ++i) {}
-  while (client.read(3)) {}
+  for (int i = 2; i < 2000 && client.send_text(request_text(i, AgentsRequest{})); ++i) {
+  }
+  while (client.read(3)) {
+  }
   EXPECT_TRUE(client.closed());
 }
 
@@ -172,7 +181,8 @@ TEST_F(Served, WhoSendsSlowlyIsCutOff) {
   EXPECT_TRUE(loris.http("").empty()) << "the header's time is over";
   TlsClient silent(rig.port());
   ASSERT_EQ(silent.upgrade("localhost"), 101);
-  while (silent.read(8)) {}
+  while (silent.read(8)) {
+  }
   EXPECT_EQ(silent.close_code(), 1008) << "no hello within 5 s";
 }
 

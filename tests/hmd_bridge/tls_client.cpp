@@ -18,7 +18,9 @@ namespace http = beast::http;
 namespace websocket = beast::websocket;
 using asio::ip::tcp;
 
-std::chrono::milliseconds milliseconds(double s) { return std::chrono::milliseconds(static_cast<std::int64_t>(s * 1000)); }
+std::chrono::milliseconds milliseconds(double s) {
+  return std::chrono::milliseconds(static_cast<std::int64_t>(s * 1000));
+}
 
 }  // namespace
 
@@ -50,7 +52,8 @@ class TlsClient::Parts {
     if (!finished) {
       beast::get_lowest_layer(ws).close();
       io.restart();
-      while (!finished && io.run_one() > 0) {}
+      while (!finished && io.run_one() > 0) {
+      }
     }
     return !result;
   }
@@ -70,7 +73,8 @@ TlsClient::~TlsClient() {
 }
 
 bool TlsClient::send_raw(const std::string& bytes) {
-  return parts_->ok && parts_->wait([&](auto done) { asio::async_write(parts_->ws.next_layer(), asio::buffer(bytes), done); });
+  return parts_->ok &&
+         parts_->wait([&](auto done) { asio::async_write(parts_->ws.next_layer(), asio::buffer(bytes), done); });
 }
 
 std::string TlsClient::http(const std::string& request) {
@@ -119,7 +123,8 @@ std::optional<TlsClient::Message> TlsClient::read(double seconds) {
   }
   const auto until = std::chrono::steady_clock::now() + milliseconds(seconds);
   p.io.restart();
-  while (p.reading && p.io.run_one_until(until) > 0) {}
+  while (p.reading && p.io.run_one_until(until) > 0) {
+  }
   if (!p.arrived) return std::nullopt;
   p.arrived = false;
   Message message{p.ws.got_text(), beast::buffers_to_string(p.in.cdata())};

@@ -127,6 +127,22 @@ TEST_F(StackSystemTest, the_map_outlives_its_agents_and_every_process) {
   EXPECT_TRUE(map_becomes(before));
 }
 
+TEST_F(StackSystemTest, who_frees_a_lease_ends_the_client_that_renews_it) {
+  stack_->start_all();
+  const std::string where = " --box \"0 0 0 1 1 1\" --author ";
+  Process hold = stack_->start_concord(
+      *person_, {"lease", "hold", "mine", "--box", "0 0 0 1 1 1", "--for", "60", "--author", "ann"});
+  const auto held = [this] { return stack_->concord(*person_, "leases").find("mine") != std::string::npos; };
+  ASSERT_TRUE(happens(held));
+  EXPECT_THROW(stack_->concord(*person_, "edit add" + where + "tom"), std::runtime_error) << "ann's";
+  EXPECT_THROW(stack_->concord(*person_, "lease free mine --author tom"), std::runtime_error) << "ann's";
+  EXPECT_TRUE(hold.runs());
+  stack_->concord(*person_, "lease free mine --author ann");
+  EXPECT_EQ(hold.wait(), 3);
+  EXPECT_FALSE(held());
+  stack_->concord(*person_, "edit add" + where + "tom");
+}
+
 TEST_F(StackSystemTest, an_edit_is_in_the_map_and_survives_the_killing_of_merge) {
   stack_->start_all();
   listen_to_map(*person_);

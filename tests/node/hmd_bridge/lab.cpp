@@ -6,19 +6,23 @@
 
 namespace concord::hmd {
 
-Lab::Lab(With with) {
+Lab::Lab(With with, double resolution) {
   std::string pattern = "/dev/shm/concord-lab-XXXXXX";
   if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no /dev/shm");
   site.state = pattern;
-  site.resolution = 0.1;
+  site.resolution = resolution;
   site.planner.zmin = 0.1;
   site.planner.zmax = 0.8;
   site.unlisted.radius = 0.2;
   bus = std::make_unique<LockstepBus>(kStart);
   const auto context = [&](const char* process) { return NodeContext{*bus, counters, site, process, bus->now()}; };
   for (const char* process : {"ingest", "merge", "planner"}) publish_status_each_second(context(process));
+  if (with != kWithoutAlign) {
+    publish_status_each_second(context("align"));
+    align = std::make_unique<AlignNode>(context("align"), std::launch::deferred);
+  }
   ingest = std::make_unique<IngestNode>(context("ingest"));
-  if (with == kAll) merge = std::make_unique<MergeNode>(context("merge"));
+  if (with != kWithoutMerge) merge = std::make_unique<MergeNode>(context("merge"));
   planner = std::make_unique<PlannerNode>(context("planner"));
   gate = std::make_unique<Gate>(random_secret);
   Hub::Config config = hub_config(site);
@@ -28,8 +32,9 @@ Lab::Lab(With with) {
 }
 
 Lab::~Lab() {
-  robot.reset();
+  sent_.clear();
   bridge.reset();
+  align.reset();
   planner.reset();
   merge.reset();
   ingest.reset();
@@ -49,19 +54,25 @@ bool Lab::run_until(double seconds, const std::function<bool()>& done) {
 void Lab::robot_maps() {
   VoxelMask all;
   all.fill(~std::uint64_t{0});
-  VoxelMask lowest{};
-  lowest[0] = ~std::uint64_t{0};
+  BrickMap map;
   for (int x = 0; x < 8; ++x) {
     for (int y = 0; y < 8; ++y) {
-      robot_map.set({x, y, 0}, Brick::uniform(all, kFree));
+      map.set({x, y, 0}, Brick::uniform(all, kFree));
       VoxelMask top{};
       top[7] = ~std::uint64_t{0};
-      robot_map.set({x, y, -1}, Brick::uniform(top, kOccupied));
+      map.set({x, y, -1}, Brick::uniform(top, kOccupied));
     }
   }
-  robot = std::make_unique<BrickSender>(*bus, counters, BrickSender::Config{"in/robot1", site.resolution, 5e6, bus->now()}, robot_map);
-  robot->begin("odom");
-  for (const BrickIndex index : robot_map.sorted_bricks()) robot->touch(index);
+  agent_maps("robot1", map);
+}
+
+void Lab::agent_maps(const std::string& agent, const BrickMap& map) {
+  Sent& sent = sent_[agent];
+  sent.map = map;
+  sent.sender = std::make_unique<BrickSender>(
+      *bus, counters, BrickSender::Config{"in/" + agent, site.resolution, 5e6, bus->now()}, sent.map);
+  sent.sender->begin("odom");
+  for (const BrickIndex index : sent.map.sorted_bricks()) sent.sender->touch(index);
   run(3);
 }
 

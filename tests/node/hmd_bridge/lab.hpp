@@ -1,11 +1,13 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "access/token_store.hpp"
+#include "align/align_node.hpp"
 #include "bridge_node.hpp"
 #include "bus/lockstep_bus.hpp"
 #include "ingest/ingest_node.hpp"
@@ -19,8 +21,8 @@ class Lab {
  public:
   static constexpr std::int64_t kStart = 1'700'000'000'000'000;
 
-  enum With { kAll, kWithoutMerge };
-  explicit Lab(With with = kAll);
+  enum With { kAll, kWithoutMerge, kWithoutAlign };
+  explicit Lab(With with = kAll, double resolution = 0.1);
   ~Lab();
   Lab(const Lab&) = delete;
   Lab& operator=(const Lab&) = delete;
@@ -29,12 +31,12 @@ class Lab {
   /// Until `done`, at most so long. @return done().
   bool run_until(double seconds, const std::function<bool()>& done);
 
-  /// A hall 6.4 m by 6.4 m of free space from z = 0 to 0.8 with a floor, in robot1's frame; with a wall across the middle
-  /// that leaves a door at each end if asked for.
+  /// robot1 sends a hall 6.4 m by 6.4 m of free space from z = 0 to 0.8 with a floor.
   void robot_maps();
+  /// An agent sends a submap, in the frame odom.
+  void agent_maps(const std::string& agent, const BrickMap& map);
   /// Where robot1 is, in its own frame.
   void robot_at(double x, double y);
-  void say_zones_and_settle() { run(2.5); }
 
   Site site;
   Counters counters;
@@ -42,10 +44,16 @@ class Lab {
   std::unique_ptr<IngestNode> ingest;
   std::unique_ptr<MergeNode> merge;
   std::unique_ptr<PlannerNode> planner;
+  std::unique_ptr<AlignNode> align;
   std::unique_ptr<Gate> gate;
   std::unique_ptr<BridgeNode> bridge;
-  BrickMap robot_map;
-  std::unique_ptr<BrickSender> robot;
+
+ private:
+  struct Sent {
+    BrickMap map;
+    std::unique_ptr<BrickSender> sender;
+  };
+  std::map<std::string, Sent> sent_;  ///< by agent
 };
 
 /// A client of the lab's bridge.

@@ -9,6 +9,17 @@ namespace {
 
 class PeopleNodeTest : public PeopleStation {};
 
+TEST_F(PeopleNodeTest, WhoWasToldNoHasItNotDoneByACopyThatWasUnderWay) {
+  ASSERT_TRUE(lease("corner", "eva", true).ok);
+  const EditRequest toms = edit_of("e1", "tom", {5, 5, 5});
+  ASSERT_EQ(edit(toms).code, "LOCKED");
+  ASSERT_TRUE(lease("corner", "eva", false).ok);
+  EXPECT_EQ(edit(toms).code, "LOCKED") << "the same answer to the same request";
+  EXPECT_TRUE(node_->map().empty());
+  run(2'000'000);
+  EXPECT_TRUE(edit(toms).ok) << "asked again";
+}
+
 TEST_F(PeopleNodeTest, AStoreThatNobodyCouldHaveWrittenIsToldAtTheStart) {
   ASSERT_TRUE(add("e1", {1, 1, 1}).ok);
   ASSERT_TRUE(undo("u1", "e1").ok);
@@ -63,11 +74,13 @@ TEST_F(PeopleNodeTest, AnEditInAHeadsetsFrameIsPutIntoTheMap) {
   EXPECT_EQ(edit(request).code, "NO_AGENT");
   bus_->publish("in/hmd1/pose", encode(AgentPose{"", "room", Transform::Identity(), 5}));
   bus_->deliver();
+  let_refusals_pass();
   EXPECT_EQ(edit(request).code, "NOT_ALIGNED");
   request.frame.frame_id = "hall";
   EXPECT_EQ(edit(request).code, "BAD_FRAME");
   ASSERT_TRUE(ask("in/transform", encode(TransformRequest{"t1", "eva", "hmd1", "", at(3, 0)}, bus_->now())).ok);
   request.frame.frame_id = "room";
+  let_refusals_pass();
   EXPECT_TRUE(edit(request).ok);
   EXPECT_EQ(node_->map().at({30, 0, 0}), kPinnedOccupied);
 }
@@ -81,6 +94,7 @@ TEST_F(PeopleNodeTest, AMoveTakesWhatIsThereNow) {
   ASSERT_TRUE(add("e1", {16, 0, 3}).ok);
   EXPECT_EQ(edit(move).code, "COLLISION");
   ASSERT_TRUE(undo("u1", "e1").ok);
+  let_refusals_pass();
   const Answer moved = edit(move);
   EXPECT_TRUE(moved.ok) << moved.message;
   EXPECT_EQ(moved.count, 2);
@@ -153,6 +167,13 @@ TEST_F(PeopleNodeTest, ZonesAreHeardAndOutliveARestart) {
   EXPECT_EQ(std::get<Box>(zones_->items()[0].volume).min.x(), 2);
 }
 
+TEST_F(PeopleNodeTest, ATextOverItsLimitIsAnsweredAndCounted) {
+  const Answer refused = zone("z1", "eva", ZoneRequest::Op::kAdd, std::string(1000, 'x'));
+  EXPECT_EQ(refused.id, "z1");
+  EXPECT_EQ(refused.code, "TOO_LARGE");
+  EXPECT_EQ(counters_.get("refused.in/zone.TOO_LARGE"), 1);
+}
+
 TEST_F(PeopleNodeTest, LeasesKeepOthersOutUntilTheyAreOver) {
   ASSERT_TRUE(lease("l1", "eva", true).ok);
   run(100'000);
@@ -160,7 +181,9 @@ TEST_F(PeopleNodeTest, LeasesKeepOthersOutUntilTheyAreOver) {
   EXPECT_EQ(leases_->items()[0].author, "eva");
   EXPECT_EQ(edit(edit_of("b1", "tom", {5, 5, 5})).code, "LOCKED");
   EXPECT_EQ(zone("z1", "tom", ZoneRequest::Op::kAdd, "door").code, "LOCKED");
-  EXPECT_EQ(lease("l2", "tom", true).code, "LOCKED");
+  const Answer locked = lease("l2", "tom", true);
+  EXPECT_EQ(locked.code, "LOCKED");
+  EXPECT_NE(locked.message.find("eva holds lease 'l1' for "), std::string::npos) << locked.message;
   EXPECT_TRUE(edit(edit_of("a1", "eva", {5, 5, 5})).ok);
   const Bytes toms_undo = encode(UndoRequest{"u1", "tom", "a1", false, 0});
   EXPECT_EQ(ask("in/undo", toms_undo).code, "LOCKED");

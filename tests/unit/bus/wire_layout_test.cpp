@@ -12,7 +12,7 @@ constexpr WireField kRow[] = {count(3), array(1)};
 WireFit fit(std::initializer_list<int> bytes, std::span<const WireField> layout) {
   Bytes message(8);
   for (const int byte : bytes) message.push_back(static_cast<std::uint8_t>(byte));
-  return fits(message, layout);
+  return check_layout(message, layout).fit;
 }
 
 TEST(WireLayout, CountsWithinRecordsLeaveTheOneBeforeThemAsItWas) {

@@ -57,8 +57,9 @@ class Commands : public testing::Test {
 
   Ran run(const std::vector<std::string>& arguments) {
     Program program;
-    for (const auto add : {add_info, add_merge, add_project, add_plan, add_edit, add_requests, add_downsample, add_up,
-                           add_zones, add_leases, add_history, add_conflicts, add_agent_corrections, add_saved_maps})
+    for (const auto add :
+         {add_info, add_merge, add_project, add_plan, add_edit, add_requests, add_goals, add_downsample, add_up,
+          add_zones, add_leases, add_history, add_conflicts, add_agent_corrections, add_saved_maps})
       add(program);
     std::vector<const char*> argv = {"concord"};
     for (const std::string& argument : arguments) argv.push_back(argument.c_str());
@@ -241,12 +242,12 @@ TEST_F(Commands, EveryCommandRefusesASiteFileThatCannotBeUsed) {
   }
 }
 
-TEST_F(Commands, ACellSmallerThanAVoxelIsRefusedBeforeAnybodyIsAsked) {
-  std::ofstream(file("site.yaml")) << "lcm_url: memq://\nresolution: 0.1\n";
-  for (const char* cell : {"0", "0.05", "nan"}) {
+TEST_F(Commands, ACellOfNoSizeIsRefusedBeforeAnybodyIsAsked) {
+  std::ofstream(file("site.yaml")) << "lcm_url: memq://\n";
+  for (const char* cell : {"0", "-1", "nan"}) {
     const Ran ran = run({"downsample", "robot1", cell, "--out", file("c.csv"), "--site", file("site.yaml")});
     EXPECT_EQ(ran.exit, 2);
-    EXPECT_NE(ran.err.find("0.100 m"), std::string::npos) << ran.err;
+    EXPECT_NE(ran.err.find("RES_MISMATCH"), std::string::npos) << ran.err;
   }
 }
 
@@ -303,6 +304,16 @@ TEST_F(Commands, WhatCannotBeMeantIsRefusedBeforeAnyoneIsAsked) {
       {"zone", "add", "Pit", "--box", "0 0 0 1 1 1"},
       {"zone", "add", "Pit", "--box", "0 0 0 1 1 1", "--no-go", "--allow-contact"},
       {"zone", "add", "Pit/1", "--box", "0 0 0 1 1 1", "--no-go"},
+      {"zone", "add", "Pit\u202E", "--box", "0 0 0 1 1 1", "--no-go"},
+      {"zone", "add", "..", "--box", "0 0 0 1 1 1", "--no-go"},
+      {"zone", "add", " Pit", "--box", "0 0 0 1 1 1", "--no-go"},
+      {"zone", "add", std::string(81, 'x'), "--box", "0 0 0 1 1 1", "--no-go"},
+      {"zone", "add", "Pit", "--box", "0 0 0 1 1 1", "--no-go", "--author", std::string(1000, 'x')},
+      {"zone", "add", "Pit", "--box", "0 0 0 1 1 1", "--no-go", "--id", std::string(81, 'x')},
+      {"edit", "add", "--box", "0 0 0 1 1 1", "--author", "a\nb"},
+      {"history", "--author", std::string(81, 'x')},
+      {"goal", "robot1", "1", "1", "--from", "1"},
+      {"goal", "robot 1", "1", "1"},
       {"zone", "delete", "Pit", "--no-go"},
       {"lease", "hold", "mine"},
       {"lease", "free", "mine", "--for", "10"},

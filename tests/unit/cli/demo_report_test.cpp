@@ -1,5 +1,7 @@
 #include "cli/demo_report.hpp"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -62,6 +64,26 @@ TEST_F(DemoReportTest, ThePageLinksAllThatIsThere) {
   for (const char* file : {"overview.png", "map.bt", "report.json", "demo.lcm"}) {
     EXPECT_NE(html.find("href=\"" + std::string(file) + "\""), std::string::npos) << file;
   }
+}
+
+TEST_F(DemoReportTest, WhatEachShowsAloneStandsBesideWhatAllShow) {
+  report.merged = MapScore{0.9, 0.8, {}};
+  report.agents[0].recall = 0.5;
+  const auto numbers = to_overview(report).numbers;
+  const auto shows = [&](const std::string& what, const std::string& value) {
+    return std::ranges::find(numbers, std::pair(what, value)) != numbers.end();
+  };
+  EXPECT_TRUE(shows("true surface shown (recall)", "80.0 %"));
+  EXPECT_TRUE(shows("by a alone", "50.0 %"));
+  EXPECT_TRUE(std::ranges::none_of(numbers, [](const auto& number) { return number.first == "by b alone"; }));
+  EXPECT_EQ(to_json(report)["agents"][0]["recall"], 0.5);
+  EXPECT_TRUE(to_json(report)["agents"][1]["recall"].is_null());
+}
+
+/// A logger cannot ask again: the page must not promise that all is there.
+TEST_F(DemoReportTest, ThePageDoesNotPromiseAWholeLog) {
+  EXPECT_EQ(to_html(report).find("Everything"), std::string::npos);
+  EXPECT_NE(to_html(report).find("missed"), std::string::npos);
 }
 
 TEST_F(DemoReportTest, ThePictureIsToldWhyThereIsNoPath) {

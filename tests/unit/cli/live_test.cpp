@@ -1,5 +1,6 @@
 #include "cli/live.hpp"
 
+#include <pwd.h>
 #include <signal.h>
 #include <unistd.h>
 
@@ -10,6 +11,7 @@
 
 #include "cli/downsample.hpp"
 #include "cli/end_request.hpp"
+#include "cli/report.hpp"
 
 namespace concord {
 namespace {
@@ -38,7 +40,7 @@ TEST_F(LiveTest, AsksAgainUntilItIsAnswered) {
   live.hear<TransformRequest>("in/transform", [&](const std::string&, const TransformRequest& asked) {
     if (++heard == 3) answer(live.bus(), {asked.id, "merge", true, "OK", "placed", 7, 0});
   });
-  const auto answered = live.ask("in/transform", encode(mine, 0), mine.id);
+  const auto answered = live.ask("in/transform", mine);
   ASSERT_TRUE(answered);
   EXPECT_EQ(heard, 3);
   EXPECT_EQ(answered->revision, 7);
@@ -50,7 +52,7 @@ TEST_F(LiveTest, ARefusalIsThreeAndCarriesTheReason) {
   live.hear<TransformRequest>("in/transform", [&](const std::string&, const TransformRequest& asked) {
     answer(live.bus(), {asked.id, "merge", false, "NO_AGENT", "no agent robot1", 0, 0});
   });
-  const auto answered = live.ask("in/transform", encode(mine, 0), mine.id);
+  const auto answered = live.ask("in/transform", mine);
   ASSERT_FALSE(answered);
   EXPECT_EQ(answered.error().exit, Exit::kRefused);
   EXPECT_EQ(answered.error().code, "NO_AGENT");
@@ -65,7 +67,7 @@ TEST_F(LiveTest, WhoIsBusyIsAskedAgain) {
     const bool ok = ++heard == 3;
     answer(live.bus(), {asked.id, "merge", ok, ok ? "OK" : "BUSY", "not now", 0, 0});
   });
-  EXPECT_TRUE(live.ask("in/transform", encode(mine, 0), mine.id));
+  EXPECT_TRUE(live.ask("in/transform", mine));
   EXPECT_EQ(heard, 3);
 }
 
@@ -77,8 +79,8 @@ TEST_F(LiveTest, AnIdThatAPersonGaveIsHeeded) {
   live.hear<TransformRequest>("in/transform", [&](const std::string&, const TransformRequest& asked) {
     answer(live.bus(), {asked.id, "merge", true, "OK", "", ++heard, 0});
   });
-  EXPECT_EQ(live.ask("in/transform", encode(request("mine"), 0), "mine")->revision, 1);
-  EXPECT_EQ(live.ask("in/transform", encode(request("mine"), 0), "mine")->revision, 2) << "not the answer of before";
+  EXPECT_EQ(live.ask("in/transform", request("mine"))->revision, 1);
+  EXPECT_EQ(live.ask("in/transform", request("mine"))->revision, 2) << "not the answer of before";
 }
 
 TEST_F(LiveTest, AnAnswerToSomeoneElseIsNone) {
@@ -88,7 +90,7 @@ TEST_F(LiveTest, AnAnswerToSomeoneElseIsNone) {
   live.hear<TransformRequest>("in/transform", [&](const std::string&, const TransformRequest&) {
     answer(live.bus(), {"another", "merge", true, "OK", "", 0, 0});
   });
-  const auto answered = live.ask("in/transform", encode(mine, 0), mine.id);
+  const auto answered = live.ask("in/transform", mine);
   ASSERT_FALSE(answered);
   EXPECT_EQ(answered.error().exit, Exit::kNoAnswer);
 }
@@ -99,6 +101,47 @@ TEST_F(LiveTest, NoTwoIdsAreEqualAndAllAreNames) {
   EXPECT_NE(first, second);
   EXPECT_NE(first, third);
   for (const std::string& id : {first, second, third}) EXPECT_TRUE(is_name(id)) << id;
+}
+
+TEST_F(LiveTest, WhatTheStackWouldRefuseUnreadIsNotAsked) {
+  Live live(common);
+  int heard = 0;
+  live.hear<TransformRequest>("in/transform", [&](const std::string&, const TransformRequest&) { ++heard; });
+  TransformRequest mine = request(live.new_id());
+  mine.author = std::string(1000, 'x');
+  const auto answered = live.ask("in/transform", mine);
+  ASSERT_FALSE(answered);
+  EXPECT_EQ(answered.error().exit, Exit::kUnusable);
+  EXPECT_EQ(answered.error().code, "TOO_LARGE");
+  EXPECT_NE(answered.error().message.find("at most 80"), std::string::npos) << answered.error().message;
+  EXPECT_EQ(heard, 0);
+}
+
+TEST_F(LiveTest, MetresAreTheStacksWhateverTheSiteFileSays) {
+  Live live(common);
+  EXPECT_EQ(live.site().resolution, 0.05);
+  live.bus().every(10'000, [&] { live.bus().publish("out/agents", encode(AgentList{1, 0.2, {}})); });
+  ASSERT_TRUE(live.take_resolution());
+  EXPECT_EQ(live.site().resolution, 0.2);
+}
+
+TEST_F(LiveTest, NobodyWhoSaysTheResolutionIsNoAnswer) {
+  common.timeout = 0.2;
+  Live live(common);
+  const auto taken = live.take_resolution();
+  ASSERT_FALSE(taken);
+  EXPECT_EQ(taken.error().exit, Exit::kNoAnswer);
+}
+
+TEST_F(LiveTest, AnAuthorIsNeverJustAnybody) {
+  setenv("USER", "Zoë", 1);
+  EXPECT_EQ(author_or_user(""), "Zoë");
+  EXPECT_EQ(author_or_user("tom"), "tom");
+  setenv("USER", "a\nb", 1);
+  EXPECT_NE(author_or_user(""), "a\nb");
+  unsetenv("USER");
+  const passwd* login = getpwuid(getuid());
+  EXPECT_EQ(author_or_user(""), login != nullptr ? login->pw_name : "uid-" + std::to_string(getuid()));
 }
 
 TEST_F(LiveTest, KeepsTheLatestPathOfARequest) {
@@ -139,7 +182,7 @@ TEST_F(LiveTest, CopiesAStreamWhole) {
 /// Why there is no submap of `agent` to wait for, when merge lists `listed` every now and then.
 std::string why_no_submap(const Common& common, const std::string& agent, const std::vector<AgentState>& listed) {
   Live live(common);
-  live.bus().every(20'000, [&] { live.bus().publish("out/agents", encode(AgentList{live.bus().now(), listed})); });
+  live.bus().every(20'000, [&] { live.bus().publish("out/agents", encode(AgentList{live.bus().now(), 0.1, listed})); });
   StreamCopy copy(live, "out/agent/" + agent);
   const auto synced = wait_for_submap(live, copy, agent);
   return synced ? "there is" : synced.error().code;

@@ -64,6 +64,16 @@ TEST_F(LoadArchive, IngestsRefusalEndsIt) {
   EXPECT_EQ(heard_, 1);
 }
 
+TEST_F(LoadArchive, WhatIsHalfLoadedIsToldHowToGoOn) {
+  const Outcome outcome = load([this](int) {
+    say("ingest", Code::kBusy, true);
+    say("merge", Code::kExists);
+  });
+  ASSERT_FALSE(outcome);
+  EXPECT_EQ(outcome.error().code, "EXISTS");
+  EXPECT_NE(outcome.error().message.find("--id " + request_.id), std::string::npos) << outcome.error().message;
+}
+
 TEST_F(LoadArchive, BothMustHaveDoneIt) {
   const Outcome outcome = load([this](int) { say("ingest", Code::kBusy, true); });
   ASSERT_FALSE(outcome);
@@ -81,7 +91,7 @@ TEST_F(LoadArchive, AMergeThatStaysBusyIsToldWithTheIdToGoOnWith) {
 }
 
 TEST_F(LoadArchive, ItWaitsAsLongAsLayersArrive) {
-  AgentList list;
+  AgentList list{0, 0.1, {}};
   list.agents.resize(1);
   list.agents[0].id = "robot1";
   live_->bus().every(300'000, [&] {

@@ -67,8 +67,10 @@ TEST(Origin, TheServerItselfAndThoseListed) {
 }
 
 TEST(Origin, OnlyThisMachinesOwnNamesAreLocal) {
-  for (const char* host : {"localhost", "localhost:8443", "127.0.0.1:1", "[::1]:8443", "LOCALHOST"}) EXPECT_TRUE(is_local_host(host)) << host;
-  for (const char* host : {"", "evil.example", "localhost.evil.example", "127.evil.example", "127.0.0.1.evil.example:80", "[::2]"}) {
+  for (const char* host : {"localhost", "localhost:8443", "127.0.0.1:1", "[::1]:8443", "LOCALHOST"})
+    EXPECT_TRUE(is_local_host(host)) << host;
+  for (const char* host :
+       {"", "evil.example", "localhost.evil.example", "127.evil.example", "127.0.0.1.evil.example:80", "[::2]"}) {
     EXPECT_FALSE(is_local_host(host)) << host;
   }
   EXPECT_TRUE(is_loopback("127.0.0.1") && is_loopback("::1") && is_loopback("::ffff:127.0.0.1"));
@@ -129,8 +131,9 @@ TEST(StaticFiles, OnlyWhatWasThereAtTheStartIsServed) {
   ASSERT_NE(files.find("/"), nullptr);
   EXPECT_EQ(*files.find("/?a=b")->body, "page");
   EXPECT_EQ(files.find("/sub/a.js")->type, "text/javascript; charset=utf-8");
-  for (const char* target : {"/../secret.txt", "/sub/../../secret.txt", "/%2e%2e/secret.txt", "//index.html", "/sub", "/sub/", "", "index.html",
-                             "/sub/.hidden", "/sub/.git/config", "/sub/a.js/", "/sub\\a.js", "/sub/a.js%00", "http://x/index.html"}) {
+  for (const char* target : {"/../secret.txt", "/sub/../../secret.txt", "/%2e%2e/secret.txt", "//index.html", "/sub",
+                             "/sub/", "", "index.html", "/sub/.hidden", "/sub/.git/config", "/sub/a.js/", "/sub\\a.js",
+                             "/sub/a.js%00", "http://x/index.html"}) {
     EXPECT_EQ(files.find(target), nullptr) << target;
   }
   EXPECT_FALSE(files.add(folder.path / "none", "/"));

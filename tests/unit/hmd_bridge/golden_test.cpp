@@ -111,19 +111,22 @@ TEST(ControlText, EnvelopesAreReadStrictly) {
   const auto good = read_client_text(R"({"id": 7, "request": "clock", "body": {"t0": 1.5}})");
   ASSERT_TRUE(good);
   EXPECT_EQ(std::get<ClientRequest>(*good).id, 7);
-  for (const char* text : {"", "[]", "{", "null", R"({"id":0,"request":"clock","body":{"t0":1}})",
-                           R"({"id":1,"request":"clock","body":{"t0":1},"more":1})", R"({"id":1,"request":"no_such","body":{}})",
-                           R"({"id":1.5,"request":"clock","body":{"t0":1}})", R"({"notice":"credit","body":{"bytes":-1}})",
-                           R"({"id":1,"notice":"credit","body":{"bytes":1}})", R"({"id":4294967296,"request":"agents","body":{}})",
-                           R"({"id":1,"request":"clock","body":{"t0":1e999}})"}) {
+  for (const char* text :
+       {"", "[]", "{", "null", R"({"id":0,"request":"clock","body":{"t0":1}})",
+        R"({"id":1,"request":"clock","body":{"t0":1},"more":1})", R"({"id":1,"request":"no_such","body":{}})",
+        R"({"id":1.5,"request":"clock","body":{"t0":1}})", R"({"notice":"credit","body":{"bytes":-1}})",
+        R"({"id":1,"notice":"credit","body":{"bytes":1}})", R"({"id":4294967296,"request":"agents","body":{}})",
+        R"({"id":1,"request":"clock","body":{"t0":1e999}})"}) {
     EXPECT_FALSE(read_client_text(text)) << text;
   }
-  EXPECT_EQ(read_client_text(R"({"id":9,"request":"clock","body":{}})").error().id, 9) << "the refusal reaches its asker";
+  EXPECT_EQ(read_client_text(R"({"id":9,"request":"clock","body":{}})").error().id, 9)
+      << "the refusal reaches its asker";
 }
 
 TEST(ControlText, DepthAndSizeAreBoundedBeforeParsing) {
   EXPECT_FALSE(read_client_text(std::string(200'000, '[')));
-  EXPECT_FALSE(read_client_text(R"({"id":1,"request":"clock","body":)" + std::string(100, '[') + std::string(100, ']') + "}"));
+  EXPECT_FALSE(
+      read_client_text(R"({"id":1,"request":"clock","body":)" + std::string(100, '[') + std::string(100, ']') + "}"));
   EXPECT_FALSE(read_client_text("\"" + std::string(kMaxTextBytes, 'x') + "\""));
   EXPECT_TRUE(nests_at_most(R"({"a": "[[[[[[[\"[["})", 1)) << "brackets in texts do not nest";
 }

@@ -68,7 +68,8 @@ TEST(RoomMapper, RaysFreeWhatIsBeforeTheHitAndNeverTheHitNorWhatIsBehind) {
   for (int i = 0; i < 3; ++i) ASSERT_TRUE(mapper.take(look_at(parts), i));
   const BrickMap& map = mapper.map();
   const auto at = [&](double x, double y, double z) { return map.at(voxel_of({x, y, z}, 0.05)); };
-  for (double z = 0.08; z < 1.5; z += 0.05) EXPECT_EQ(at(0.03, 0.03, z), kFree) << "straight down, along an axis: " << z;
+  for (double z = 0.08; z < 1.5; z += 0.05)
+    EXPECT_EQ(at(0.03, 0.03, z), kFree) << "straight down, along an axis: " << z;
   EXPECT_TRUE(is_occupied(at(0.03, 0.03, 0.01)));
   EXPECT_EQ(at(0.03, 0.03, -0.5), kUnknown);
   EXPECT_TRUE(is_occupied(at(1.8, 0.03, -1.01)));

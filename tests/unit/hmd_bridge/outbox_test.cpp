@@ -33,7 +33,8 @@ RC_GTEST_PROP(Outbox, LosslessTextsComeWholeAndOfEachKeyTheNewest, ()) {
         RC_ASSERT(*taken == owed.front());
         owed.pop_front();
       } else {
-        const auto it = std::find_if(newest.begin(), newest.end(), [&](const auto& entry) { return entry.second == *taken; });
+        const auto it =
+            std::find_if(newest.begin(), newest.end(), [&](const auto& entry) { return entry.second == *taken; });
         RC_ASSERT(it != newest.end());
         newest.erase(it);
       }

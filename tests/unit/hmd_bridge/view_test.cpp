@@ -36,7 +36,8 @@ class Mirror {
       for (const auto& [number, bits] : chunks) {
         for (int v = 0; v < 4096; ++v) {
           if ((bits[static_cast<std::size_t>(v / 8)] >> (v % 8) & 1) == 0) continue;
-          cells.insert({key.index.x * 64 + (number & 3) * 16 + (v & 15), key.index.y * 64 + (number >> 2 & 3) * 16 + (v >> 4 & 15),
+          cells.insert({key.index.x * 64 + (number & 3) * 16 + (v & 15),
+                        key.index.y * 64 + (number >> 2 & 3) * 16 + (v >> 4 & 15),
                         key.index.z * 64 + (number >> 4) * 16 + (v >> 8)});
         }
       }
@@ -65,7 +66,9 @@ void drain(ClientView& view, BlockStore& store, Mirror& mirror, std::size_t most
   }
 }
 
-ViewRegion all(int levels) { return {Eigen::Vector3d::Zero(), std::vector<double>(static_cast<std::size_t>(levels), 1e6), {}, 0.05}; }
+ViewRegion all(int levels) {
+  return {Eigen::Vector3d::Zero(), std::vector<double>(static_cast<std::size_t>(levels), 1e6), {}, 0.05};
+}
 
 /// A random change: few places, so that bricks share chunks, blocks and parents, and empty again.
 std::pair<BrickIndex, VoxelMask> random_change() {
@@ -107,26 +110,32 @@ RC_GTEST_PROP(ClientView, WhoeverReadsSlowlyAndLooksAroundEndsWithWhatIsThere, (
   BlockStore store(0, 3);
   std::vector<BlockKey> changed;
   const auto random_region = [] {
-    const double a = *rc::gen::inRange(0, 80) / 10.0, b = a + *rc::gen::inRange(0, 80) / 10.0, c = b + *rc::gen::inRange(0, 200) / 10.0;
+    const double a = *rc::gen::inRange(0, 80) / 10.0, b = a + *rc::gen::inRange(0, 80) / 10.0,
+                 c = b + *rc::gen::inRange(0, 200) / 10.0;
     return ViewRegion{{*rc::gen::inRange(-40, 40) / 10.0, *rc::gen::inRange(-40, 40) / 10.0, 0}, {a, b, c}, {}, 0.05};
   };
   ClientView view(store, random_region());
   Mirror mirror;
   std::int64_t revision = 0;
+  const auto tell = [&] {
+    for (const BlockKey& key : changed) view.changed(store, key);
+    changed.clear();
+  };
   const int steps = *rc::gen::inRange(1, 40);
   for (int i = 0; i < steps; ++i) {
-    const int what = *rc::gen::inRange(0, 10);
-    if (what == 0) {
+    const int what = *rc::gen::inRange(0, 12);
+    if (what < 2) {
       view.look(store, random_region());
     } else if (what < 7) {
       const auto [index, mask] = random_change();
-      changed.clear();
       store.set(index, mask, ++revision, changed);
-      for (const BlockKey& key : changed) view.changed(store, key);
+    } else if (what < 9) {
+      tell();
     } else {
       drain(view, store, mirror, static_cast<std::size_t>(*rc::gen::inRange(0, 3)));
     }
   }
+  tell();
   drain(view, store, mirror);
   RC_ASSERT(view.complete());
 
@@ -165,7 +174,8 @@ RC_GTEST_PROP(ClientView, WhoComesBackGetsJustWhatChanged, ()) {
 }
 
 RC_GTEST_PROP(ViewRegion, EveryPointIsShownOnceAtMostAndWithinReachAlways, ()) {
-  const double a = *rc::gen::inRange(0, 100) / 10.0, b = a + *rc::gen::inRange(0, 100) / 10.0, c = b + *rc::gen::inRange(1, 300) / 10.0;
+  const double a = *rc::gen::inRange(0, 100) / 10.0, b = a + *rc::gen::inRange(0, 100) / 10.0,
+               c = b + *rc::gen::inRange(1, 300) / 10.0;
   const auto coordinate = [] { return *rc::gen::inRange(-4000, 4000) / 100.0 + 0.0013; };
   const ViewRegion region{{coordinate(), coordinate(), coordinate()}, {a, b, c}, {}, 0.05};
   const Eigen::Vector3d p{coordinate(), coordinate(), coordinate()};
@@ -200,6 +210,21 @@ TEST(ClientView, TheNearestBlockComesFirst) {
     view.sent(store, due->key);
   }
   EXPECT_EQ(order, (std::vector<int>{0, 1, 3, 5}));
+}
+
+TEST(ClientView, ABlockThatWasSentBeforeItsChangeWasToldIsNotSentAgain) {
+  BlockStore store(0, 1);
+  std::vector<BlockKey> changed;
+  store.set({0, 0, 0}, mask_of({0}), 1, changed);
+  ClientView view(store, all(1));  // looks between the change and the telling of it
+  view.sent(store, view.nearest().value().key);
+  for (const BlockKey& key : changed) view.changed(store, key);
+  EXPECT_TRUE(view.complete());
+  changed.clear();
+  store.set({0, 0, 0}, mask_of({1}), 2, changed);
+  for (const BlockKey& key : changed) view.changed(store, key);
+  ASSERT_TRUE(view.nearest());
+  EXPECT_EQ(view.nearest()->since, 1);
 }
 
 TEST(ClientView, OnlyTheNewestStateIsSentAndTheOthersAreCounted) {

@@ -1,3 +1,4 @@
+import "../support/raw_deflate";
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
