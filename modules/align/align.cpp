@@ -151,8 +151,8 @@ std::string words(const Alignment& a) {
       return "only " + percent(a.overlap()) + " of either map lies on the other; map more of what both have seen" +
              std::string(", or give a guess");
     case AlignReason::kDiverged:
-      return "the maps contradict each other there (" + percent(a.against_upright) +
-             " of the walls); give a better guess, or map the place anew";
+      return "the maps contradict each other there (" + percent(a.against_upright) + " of the walls, " +
+             percent(a.against_level) + " of the floors and ceilings); give a better guess, or map the place anew";
     case AlignReason::kDegenerate:
       return "the walls that both have seen leave it open: " + loose + "; map something that faces that way";
     case AlignReason::kAmbiguous:
