@@ -114,6 +114,11 @@ void work_on(Desk& desk, const Ask& ask, const ReferenceRequest& request) {
   const AgentState* robot = desk.world.agent(request.robot);
   if (robot == nullptr) return desk.hub.refuse(ask, Code::kNoRobot, "no robot is called " + request.robot);
   if (robot->known == 0) return desk.hub.refuse(ask, Code::kNoModel, "it has sent no submap to be compared with");
+  if (request.robot == session.agent) return desk.hub.refuse(ask, Code::kBadRequest, "that is this device itself");
+  const AgentState* own = desk.world.agent(session.agent);
+  if (own == nullptr || own->known == 0) {
+    return desk.hub.refuse(ask, Code::kNoMap, "this device has sent no submap yet; look around first");
+  }
   const auto& poses = alignments_of(desk).poses;
   const auto pose = poses.find(request.robot);
   if (pose == poses.end() || desk.now() - pose->second.heard > kStale ||

@@ -6,8 +6,8 @@
 
 #include "cli/live.hpp"
 #include "client/bridge_client.hpp"
-#include "core/transform.hpp"
 #include "core/lattice.hpp"
+#include "core/transform.hpp"
 
 namespace concord {
 

@@ -1,12 +1,9 @@
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
-import { join } from "node:path";
 import { after, afterEach, before, beforeEach, test } from "node:test";
 import type { Browser, Page } from "playwright-core";
 import { FakeServer } from "../support/fake_server";
-import { canvasShot, emulatorFile, launch, nextFrames, open, pageShot, webFolder } from "../support/page";
-import { capturesFolder } from "../support/paths";
-import { aimAt, press, pressButton, standing, type HeadsetPage } from "../support/headset";
+import { canvasShot, launch, nextFrames, open, pageShot, webFolder } from "../support/page";
+import { aimAt, enterRoom, press, pressButton, standing, type HeadsetPage } from "../support/headset";
 
 let browser: Browser;
 let server: FakeServer;
@@ -15,13 +12,8 @@ beforeEach(() => (server = new FakeServer(webFolder)));
 afterEach(() => server.stop());
 after(() => browser.close());
 
-async function headset(page: Page, room: string): Promise<void> {
-  await page.addInitScript(`window.concordRoom = ${readFileSync(join(capturesFolder, `${room}.json`), "utf8")};`);
-  await page.addInitScript({ path: emulatorFile });
-}
-
 async function entered(room: string): Promise<{ page: Page; errors: string[] }> {
-  const { page, errors } = await open(browser, await server.start(), (fresh) => headset(fresh, room), { width: 560, height: 400 }); // few pixels: all of them are drawn by software
+  const { page, errors } = await open(browser, await server.start(), (fresh) => enterRoom(fresh, room), { width: 560, height: 400 }); // few pixels: all of them are drawn by software
   await page.locator("#enter").click();
   await page.waitForFunction(() => (window as unknown as HeadsetPage).concordImmersive.presenting);
   return { page, errors };

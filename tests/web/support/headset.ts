@@ -1,14 +1,37 @@
-/** Hands for the emulated headset: aims its right controller and presses its buttons. */
+/** An emulated headset and its hands: aims its right controller and presses its buttons. */
+import { readFileSync } from "node:fs";
 import type { Page } from "playwright-core";
 import type { XRDevice } from "iwer";
 import type { App } from "../../../hmd_bridge/web/src/app";
 import type { Immersive } from "../../../hmd_bridge/web/src/xr/immersive";
-import { nextFrames } from "./page";
+import { emulatorFile, nextFrames } from "./page";
+import { captureFile } from "./room";
 
 export interface HeadsetPage {
   concord: App;
   concordImmersive: Immersive;
   xrDevice: XRDevice;
+}
+
+/** Makes a fresh page one of a Quest 3 in a captured room. */
+export async function enterRoom(page: Page, room: string): Promise<void> {
+  await page.addInitScript(`window.concordRoom = ${readFileSync(captureFile(room), "utf8")};`);
+  await page.addInitScript({ path: emulatorFile });
+}
+
+/** Until the menu says so. */
+export async function words(page: Page, text: string): Promise<void> {
+  await page.waitForFunction((said) => (window as unknown as HeadsetPage).concordImmersive.panel.pageShown.words.includes(said), text);
+}
+
+/** Moves the right hand, metres in the room (y up). */
+export async function drag(page: Page, by: [number, number, number]): Promise<void> {
+  await page.evaluate(([x, y, z]) => {
+    const { position } = (window as unknown as HeadsetPage).xrDevice.controllers.right!;
+    position.set(position.x + x, position.y + y, position.z + z);
+  }, by);
+  await nextFrames(page);
+  await nextFrames(page);
 }
 
 export const standing = (page: Page): Promise<string> => page.evaluate(() => (window as unknown as HeadsetPage).concordImmersive.own.standing.value.state);

@@ -1,7 +1,7 @@
 /** Bringing one agent's map into another: a small map of it is moved by hand, refined by the server, and accepted or not. */
 import type { Answers, Pose } from "../../generated/messages";
 import type { PointsFrame } from "../protocol/frames";
-import { composed, fromYaw, kIdentity, levelled, type Vec3 } from "../base/vec";
+import { composed, fromYaw, kIdentity, levelled, sub, type Vec3 } from "../base/vec";
 import { type News } from "../base/news";
 import { Signal } from "../base/signal";
 import type { Ask } from "../link/link";
@@ -33,12 +33,15 @@ export class AlignSession {
     private readonly news: News,
   ) {}
 
-  /** @param guess where the source is thought to be in the target; from there it is moved by hand. */
-  async begin(source: string, target: string | undefined, guess: Pose = kIdentity): Promise<void> {
+  /** Begins from where it is known to lie, or with the middle of one on the middle of the other; from there it is moved by hand. */
+  async begin(source: string, target: string | undefined, known?: Pose): Promise<void> {
     const frame = await this.news.tell(this.minimap(source, kResolution), () => null);
     if (!frame) return;
     const targetFrame = target === undefined ? null : await this.news.tell(this.minimap(target, kResolution), () => null);
-    this.current.set({ source, target, points: frame.points, targetPoints: targetFrame?.points ?? null, guess, offer: null, busy: false });
+    const targetPoints = targetFrame?.points ?? null;
+    const position: Vec3 = targetPoints ? sub(middleOf(targetPoints), middleOf(frame.points)) : [0, 0, 0];
+    const guess = known ?? { position, rotation: kIdentity.rotation };
+    this.current.set({ source, target, points: frame.points, targetPoints, guess, offer: null, busy: false });
   }
 
   /** Puts it elsewhere by hand; an offer for another place is withdrawn. It stays upright. */
