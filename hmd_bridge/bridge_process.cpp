@@ -79,6 +79,8 @@ class BridgeProcess::Parts {
 BridgeProcess::BridgeProcess(const NodeContext& context, const Options& options)
     : parts_(std::make_unique<Parts>(context, options)), address_file_(address_file(context.site)) {
   const std::vector<std::string> addresses = parts_->server.addresses();
+  std::error_code ignored;  // what could not be made cannot be written either
+  std::filesystem::create_directories(address_file_.parent_path(), ignored);
   std::ofstream out(address_file_);
   if (!(out << addresses.front() << "\n" << addresses.back() << "\n").flush()) {
     throw ConfigError("cannot write " + address_file_.string());

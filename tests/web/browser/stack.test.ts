@@ -35,17 +35,17 @@ const scene = kScenes[room];
 if (!scene) throw new Error(`no scene is described for ${room}`);
 
 let browser: Browser;
-let stack: Stack;
-let robot: Robot;
+let stack: Stack | undefined;
+let robot: Robot | undefined;
 before(async () => {
   browser = await launch();
   stack = await Stack.start(kResolution);
   robot = await Robot.map(stack.url, "robot1", meshOf(room), scene);
 });
 after(async () => {
-  robot.stop();
+  robot?.stop();
   await browser.close();
-  await stack.stop();
+  await stack?.stop();
 });
 
 /** A place on the floor of the room, for the headset's rays. */
@@ -54,7 +54,7 @@ const path = (page: Page): Promise<{ points: { p: Vec3 }[]; status: string; leng
   page.evaluate(() => (window as unknown as HeadsetPage).concord.world.paths.value.get("robot1"));
 
 test("a person enters a captured room, scans it, aligns it by hand, corrects it, names something, and blocks a robot's way", async () => {
-  const { page, errors } = await open(browser, stack.url, (fresh) => enterRoom(fresh, room), { width: 560, height: 400 });
+  const { page, errors } = await open(browser, stack!.url, (fresh) => enterRoom(fresh, room), { width: 560, height: 400 });
   await page.locator("#enter").click();
   await page.waitForFunction(() => (window as unknown as HeadsetPage).concordImmersive.presenting);
   await page.waitForFunction(() => (window as unknown as HeadsetPage).concordImmersive.uploader.occupied.value > 500);
@@ -124,7 +124,7 @@ test("a person enters a captured room, scans it, aligns it by hand, corrects it,
   assert.deepEqual(errors, []);
 
   // The same map on a desk, by somebody else.
-  const desk = await open(browser, stack.url);
+  const desk = await open(browser, stack!.url);
   await settled(desk.page, 100);
   await desk.page.getByRole("tab", { name: "History" }).click();
   await desk.page.getByRole("button", { name: "Refresh" }).click();
