@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "align/gates.hpp"
 #include "align/hypotheses.hpp"
 
 namespace concord {
@@ -28,7 +29,6 @@ void probe_slides(const AlignMap& target, const AlignMap& source, int threads, A
       Transform T = out.T_target_source;
       T.translation().head<2>() += step * axis;
       if (!is_as_good(at(T), good)) continue;
-      out.T_target_source_rival = T;
       out.loose.push_back(name_slide({axis.x(), axis.y(), 0.0}));
       break;
     }
@@ -79,7 +79,6 @@ void judge(const AlignMap& target, const AlignMap& source, const GicpResult& fin
   out.against_level = s.level().share_against();
   const double all = s.upright().all + s.level().all;
   out.free_space_violation = all > 0.0 ? (s.upright().contradicted + s.level().contradicted) / all : 0.0;
-  out.score = s.score();
   out.reason = check_gates(s, origin);
   if (out.reason == AlignReason::kDegenerate) out.loose.push_back(name_slide(Eigen::Vector3d::UnitZ()));
   if (!out.accepted()) return;
@@ -100,42 +99,9 @@ void find_rival(const AlignMap& target, const AlignMap& source, const std::vecto
     const GicpResult rival = refine_fully(target, source, h.T_target_source, threads);
     out.iterations += rival.iterations;
     if (!are_apart(rival.T_target_source, out.T_target_source, p_source)) continue;
-    out.T_target_source_rival = rival.T_target_source;
     out.reason = AlignReason::kAmbiguous;
     return;
   }
-}
-
-}  // namespace
-
-Alignment align(const AlignMap& target, const AlignMap& source, const std::optional<Transform>& guess, int threads) {
-  Alignment out;
-  if (!has_map(target) || !has_map(source)) return out;
-  const std::vector<Hypothesis> hypotheses = find_hypotheses(target, source, guess, threads);
-  out.hypotheses = static_cast<int>(hypotheses.size());
-  for (const Hypothesis& h : hypotheses) out.iterations += h.iterations;
-  if (hypotheses.empty()) {
-    out.reason = AlignReason::kLowOverlap;
-    return out;
-  }
-  const Origin origin = guess ? Origin::kGuess : Origin::kAnywhere;
-  const GicpResult fine = refine_fully(target, source, hypotheses.front().T_target_source, threads);
-  judge(target, source, fine, origin, threads, out);
-  if (out.reason == AlignReason::kDiverged) {
-    out.iterations -= fine.iterations;
-    judge(target, source, settle(target, source, fine, threads), origin, threads, out);
-  }
-  if (!out.accepted()) return out;
-  find_rival(target, source, hypotheses, threads, out);
-  return out;
-}
-
-Alignment recheck(const AlignMap& target, const AlignMap& source, const Transform& T_target_source, int threads) {
-  Alignment out;
-  if (!has_map(target) || !has_map(source)) return out;
-  out.hypotheses = 1;
-  judge(target, source, refine_finely(target, source, T_target_source, threads), Origin::kGuess, threads, out);
-  return out;
 }
 
 std::string words(const Alignment& a) {
@@ -159,6 +125,47 @@ std::string words(const Alignment& a) {
       return "another place explains the maps as well; give a guess, or map more of what sets the places apart";
   }
   return {};
+}
+
+Alignment worded(Alignment alignment) {
+  alignment.message = words(alignment);
+  return alignment;
+}
+
+Alignment find(const AlignMap& target, const AlignMap& source, const std::optional<Transform>& guess, int threads) {
+  Alignment out;
+  if (!has_map(target) || !has_map(source)) return out;
+  const std::vector<Hypothesis> hypotheses = find_hypotheses(target, source, guess, threads);
+  out.hypotheses = static_cast<int>(hypotheses.size());
+  for (const Hypothesis& h : hypotheses) out.iterations += h.iterations;
+  if (hypotheses.empty()) {
+    out.reason = AlignReason::kLowOverlap;
+    return out;
+  }
+  const Origin origin = guess ? Origin::kGuess : Origin::kAnywhere;
+  const GicpResult fine = refine_fully(target, source, hypotheses.front().T_target_source, threads);
+  judge(target, source, fine, origin, threads, out);
+  if (out.reason == AlignReason::kDiverged) {
+    out.iterations -= fine.iterations;
+    judge(target, source, settle(target, source, fine, threads), origin, threads, out);
+  }
+  if (!out.accepted()) return out;
+  find_rival(target, source, hypotheses, threads, out);
+  return out;
+}
+
+}  // namespace
+
+Alignment align(const AlignMap& target, const AlignMap& source, const std::optional<Transform>& guess, int threads) {
+  return worded(find(target, source, guess, threads));
+}
+
+Alignment recheck(const AlignMap& target, const AlignMap& source, const Transform& T_target_source, int threads) {
+  Alignment out;
+  if (!has_map(target) || !has_map(source)) return worded(out);
+  out.hypotheses = 1;
+  judge(target, source, refine_finely(target, source, T_target_source, threads), Origin::kGuess, threads, out);
+  return worded(out);
 }
 
 }  // namespace concord

@@ -53,18 +53,6 @@ bool levels_contradict(const Support& s) {
 
 }  // namespace
 
-const char* name(AlignReason reason) {
-  switch (reason) {
-    case AlignReason::kAccepted: return "ACCEPTED";
-    case AlignReason::kNoMap: return "NO_MAP";
-    case AlignReason::kLowOverlap: return "LOW_OVERLAP";
-    case AlignReason::kDiverged: return "DIVERGED";
-    case AlignReason::kDegenerate: return "DEGENERATE";
-    case AlignReason::kAmbiguous: return "AMBIGUOUS";
-  }
-  return "?";
-}
-
 AlignReason check_gates(const Support& s, Origin origin) {
   const Gates& gates = gates_for(origin);
   const Verdicts upright = s.upright();
