@@ -26,7 +26,7 @@ struct Alignments {
 
 Alignments& alignments_of(Desk& desk) { return *std::static_pointer_cast<Alignments>(desk.alignments); }
 
-Evidence to_hmd(const AlignEvidence& e) {
+Evidence to_hmd(const concord::Alignment& e) {
   Evidence evidence{e.overlap(), e.rms, e.free_space_violation, e.iterations, e.ms, {}};
   for (const std::string& direction : e.loose) {
     if (evidence.loose.size() < 6) evidence.loose.push_back(direction.substr(0, 80));
@@ -101,7 +101,7 @@ void work_on(Desk& desk, const Ask& ask, const AlignRequest& request) {
     align.T_target_source = *T;
   }
   ask_align(desk, ask, std::move(align), [&desk, ask](const AlignResult& result) {
-    const AlignEvidence& e = result.evidence;
+    const concord::Alignment& e = result.evidence;
     desk.hub.answer(ask, AlignAnswer{result.id, hmd::to_hmd(e.T_target_source), to_hmd(e), e.message.substr(0, 400)});
   });
 }
@@ -135,7 +135,7 @@ void work_on(Desk& desk, const Ask& ask, const ReferenceRequest& request) {
   align.target_frame_id = robot->frame_id;
   align.T_target_source = T_agent_base * T_own_base->inverse();
   ask_align(desk, ask, std::move(align), [&desk, ask, T_agent_base](const AlignResult& result) {
-    const AlignEvidence& e = result.evidence;
+    const concord::Alignment& e = result.evidence;
     const Transform T_robot_own = T_agent_base.inverse() * e.T_target_source;
     desk.hub.answer(ask, ReferenceAnswer{result.id, hmd::to_hmd(T_robot_own), to_hmd(e), e.message.substr(0, 400)});
   });

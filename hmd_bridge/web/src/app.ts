@@ -13,6 +13,7 @@ import type { DetailBudget } from "./map/level_of_detail";
 import { Mesher } from "./map/mesher";
 import { Views } from "./map/views";
 import { EditOverlay } from "./scene/edit_overlay";
+import { GridSheet } from "./scene/grid_sheet";
 import { MapLayers } from "./scene/map_layers";
 import type { Stage } from "./scene/stage";
 import { WorldOverlay } from "./scene/world_overlay";
@@ -34,6 +35,7 @@ export class App {
   readonly align: AlignSession;
   readonly layers: MapLayers;
   readonly editOverlay: EditOverlay;
+  readonly grid: GridSheet;
   readonly things = new Signal<Instance[]>([]);
   /** Virtual obstacles that this page added, by their ids. */
   readonly obstacles = new Signal<readonly string[]>([]);
@@ -66,7 +68,8 @@ export class App {
     this.layers = new MapLayers(this.views, new Mesher(workers), stage, world, hello.resolution, budget);
     const drawn = (): void => stage.invalidate();
     this.editOverlay = new EditOverlay(this.editor, this.draft, this.align, (target) => this.targetPose(target), hello.resolution, drawn);
-    content.add(this.layers.group, new WorldOverlay(world, hello.resolution, drawn).group, this.editOverlay.group);
+    this.grid = new GridSheet(hello.resolution, drawn);
+    content.add(this.layers.group, this.grid.group, new WorldOverlay(world, hello.resolution, drawn).group, this.editOverlay.group);
     this.layers.changed.watch(() => this.watchLabels());
   }
 

@@ -1,12 +1,15 @@
 /** The real stack: a person enters a captured room of which a robot has a map already. */
 import assert from "node:assert/strict";
+import { execFile } from "node:child_process";
+import { promisify } from "node:util";
 import { after, before, test } from "node:test";
 import type { Browser, Page } from "playwright-core";
 import type { Pose } from "../../../hmd_bridge/web/generated/messages";
 import { distance, fromYaw, toXr, yawOf, type Vec3 } from "../../../hmd_bridge/web/src/base/vec";
-import { aimAt, drag, enterRoom, press, pressButton, words, type HeadsetPage } from "../support/headset";
+import { aimAt, drag, enterRoom, looking, press, pressButton, words, type HeadsetPage } from "../support/headset";
 import { canvasShot, launch, nextFrames, open, pageShot, settled } from "../support/page";
 import { meshOf, Robot, type Robots } from "../support/room";
+import { nativeClient } from "../support/paths";
 import { Stack } from "../support/stack";
 
 const kResolution = 0.1;
@@ -28,6 +31,30 @@ const kScenes: Record<string, Scene> = {
     goal: [-0.3, -1, 0],
     obstacle: [[-0.6, 0.2, 0], [-0.1, -0.1, 0]],
     added: [[0.6, -0.9, 0], [1.0, -1.1, 0]],
+  },
+  living_room: {
+    T_odom_room: { position: [-1, 2, 0], rotation: fromYaw(-0.4) },
+    base: [0, 1.4, 0],
+    eyes: [[0, 0.5, 0.8], [0.2, 1.4, 0.6], [-0.5, 1, 0.7], [0.3, -0.5, 0.6], [0.5, -1.2, 0.8], [-0.4, -0.8, 0.6]],
+    goal: [0, -1.2, 0],
+    obstacle: [[-0.3, 0.1, 0], [0.3, -0.2, 0]],
+    added: [[0.9, -0.4, 0], [1.2, -0.7, 0]],
+  },
+  music_room: {
+    T_odom_room: { position: [1, 1, 0], rotation: fromYaw(0.3) },
+    base: [-1, 1.2, 0],
+    eyes: [[-0.9, 1, 0.8], [-0.5, 0.3, 0.6], [-0.2, -0.6, 0.7], [0.4, -1.8, 0.6], [-1.2, 1.9, 0.7], [0.3, 1.3, 0.6], [-0.9, -0.8, 0.6]],
+    goal: [-1, -0.7, 0],
+    obstacle: [[-1.2, 0.7, 0], [-0.7, 0.5, 0]],
+    added: [[-0.3, -0.6, 0], [0, -0.8, 0]],
+  },
+  meeting_room: {
+    T_odom_room: { position: [2, 0, 0], rotation: fromYaw(-0.5) },
+    base: [-1.4, -0.2, 0],
+    eyes: [[-1.2, -0.3, 0.8], [-1.3, 0.6, 0.6], [-1.4, 1.8, 0.7], [-1.2, 3.2, 0.8], [0.6, 3.3, 0.7], [1.2, -0.2, 0.6], [0, -0.4, 0.8]],
+    goal: [-1.4, 0.9, 0],
+    obstacle: [[-1.6, 0.5, 0], [-1.2, 0.3, 0]],
+    added: [[0.9, -0.2, 0], [1.2, -0.4, 0]],
   },
 };
 const room = process.env["CONCORD_ROOM"] ?? "office_large";
@@ -94,7 +121,7 @@ test("a person enters a captured room, scans it, aligns it by hand, corrects it,
   await pressButton(page, "do add");
   await words(page, "added");
   await settled(page);
-  await canvasShot(page, "stack-6-corrected");
+  await looking(page, there(scene.added[0]), () => canvasShot(page, "stack-6-corrected"));
 
   // A robot's way, blocked, and the other one.
   await pressButton(page, "page main");
@@ -108,8 +135,7 @@ test("a person enters a captured room, scans it, aligns it by hand, corrects it,
   assert.equal(before.status, "OK");
   await pressButton(page, "robot path/robot1"); // off
   await pressButton(page, "robot path/robot1"); // and on: it is told of changes from now on
-  await nextFrames(page);
-  await canvasShot(page, "stack-7-path");
+  await looking(page, there(scene.goal), () => canvasShot(page, "stack-7-path"));
   await pressButton(page, "page main");
   await pressButton(page, "page edit");
   await select(page, scene.obstacle);
@@ -120,7 +146,7 @@ test("a person enters a captured room, scans it, aligns it by hand, corrects it,
   assert.equal(after.status, "OK");
   assert(after.length > before.length + 0.02, `${before.length} m, then ${after.length} m`);
   await settled(page);
-  await canvasShot(page, "stack-8-other-way");
+  await looking(page, there(scene.goal), () => canvasShot(page, "stack-8-other-way"));
   assert.deepEqual(errors, []);
 
   // The same map on a desk, by somebody else.
@@ -133,6 +159,12 @@ test("a person enters a captured room, scans it, aligns it by hand, corrects it,
   assert.deepEqual(desk.errors, []);
   await desk.page.close();
   await page.close();
+
+  // And by a program that was written from the protocol's page.
+  const { stdout } = await promisify(execFile)("python3", [nativeClient, stack!.url]);
+  const seen = JSON.parse(stdout) as { before: number; added: number; after: number };
+  assert(seen.before > 1000, stdout);
+  assert.deepEqual([seen.added, seen.after], [seen.before + 8, seen.before]);
 
   /** A box on the floor, drawn in one go. */
   async function select(on: Page, [from, to]: [Vec3, Vec3]): Promise<void> {

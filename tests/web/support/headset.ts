@@ -24,6 +24,26 @@ export async function words(page: Page, text: string): Promise<void> {
   await page.waitForFunction((said) => (window as unknown as HeadsetPage).concordImmersive.panel.pageShown.words.includes(said), text);
 }
 
+/** Turns the head towards a place of the room (y up), does something, and turns it back. */
+export async function looking(page: Page, at: [number, number, number], act: () => Promise<void>): Promise<void> {
+  const turn = async (yaw: number, pitch: number): Promise<void> => {
+    await page.evaluate(([y, p]) => {
+      const [sy, cy, sp, cp] = [Math.sin(y / 2), Math.cos(y / 2), Math.sin(p / 2), Math.cos(p / 2)];
+      (window as unknown as HeadsetPage).xrDevice.quaternion.set(cy * sp, sy * cp, -sy * sp, cy * cp);
+    }, [yaw, pitch] as const);
+    await nextFrames(page);
+    await nextFrames(page);
+  };
+  const { x, y, z } = await page.evaluate(() => {
+    const { position } = (window as unknown as HeadsetPage).xrDevice;
+    return { x: position.x, y: position.y, z: position.z };
+  });
+  const d = [at[0] - x, at[1] - y, at[2] - z] as const;
+  await turn(Math.atan2(-d[0], -d[2]), Math.atan2(d[1], Math.hypot(d[0], d[2])));
+  await act();
+  await turn(0, 0);
+}
+
 /** Moves the right hand, metres in the room (y up). */
 export async function drag(page: Page, by: [number, number, number]): Promise<void> {
   await page.evaluate(([x, y, z]) => {

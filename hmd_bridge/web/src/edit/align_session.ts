@@ -26,6 +26,8 @@ const kResolution = 0.5;
 
 export class AlignSession {
   readonly current = new Signal<Aligning | null>(null);
+  /** Where this device is, as found from a robot that it sees; it waits to be accepted. */
+  readonly referred = new Signal<{ robot: string; offer: Answers["reference"] } | null>(null);
 
   constructor(
     private readonly ask: Ask,
@@ -76,6 +78,24 @@ export class AlignSession {
     const offer = this.current.value?.offer;
     if (!offer) return;
     if (await this.news.tell(this.ask("align_accept", { align: offer.align }), ({ agent }) => `${agent} is in the map now.`)) this.current.set(null);
+  }
+
+  /** Finds where this device is from where it sees a robot. @param T_own_base as seen */
+  async refer(robot: string, T_own_base: Pose): Promise<void> {
+    const offer = await this.news.tell(this.ask("reference", { robot, T_own_base }), ({ message }) => message || "A fit was found; accept it if the figures are good.");
+    if (offer) this.referred.set({ robot, offer });
+  }
+
+  async acceptReferred(): Promise<void> {
+    const offer = this.referred.value?.offer;
+    if (!offer) return;
+    await this.news.tell(this.ask("align_accept", { align: offer.align }), () => "Your room is in the map now.");
+    this.referred.set(null);
+  }
+
+  dropReferred(): void {
+    if (this.referred.value) this.drop(this.referred.value.offer.align);
+    this.referred.set(null);
   }
 
   /** As it was placed by hand, unrefined. Only into the map. */

@@ -133,6 +133,14 @@ export class Editor {
     if (await this.news.tell(asked, () => `Zone ${name} added.`)) this.cancel();
   }
 
+  /** Gives a zone the selected volume. @param revision that it was seen at */
+  async reshapeZone(name: string, kind: ZoneKind, revision: number): Promise<void> {
+    const volume = this.volume();
+    if (!volume) return;
+    const asked = this.ask("zone_change", { name, zone_kind: kind, frame: "map", volume, base_revision: revision });
+    if (await this.news.tell(asked, () => `Zone ${name} has another shape.`)) this.cancel();
+  }
+
   async obstacle(): Promise<Answers["obstacle_add"] | null> {
     const volume = this.volume();
     if (!volume) return null;

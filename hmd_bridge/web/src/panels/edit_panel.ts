@@ -80,6 +80,7 @@ function zoneRow(app: App, { name, zone_kind, author, revision, volume, T_map_zo
   return el("div", { class: "row between" }, el("span", {}, `${name}: ${words[zone_kind]}, by ${author || "somebody"}`),
     el("span", { class: "row" },
       button("Switch", () => void change(), { title: `Make it: ${words[other]}`, disabled: !still, "aria-label": `Make zone ${name}: ${words[other]}` }),
+      button("To selection", () => void app.editor.reshapeZone(name, zone_kind, revision), { title: "Give it the volume that is selected", "aria-label": `Give zone ${name} the selected volume` }),
       button("Delete", () => void app.news.tell(app.ask("zone_delete", { name, base_revision: revision }), () => `Zone ${name} deleted.`), { class: "danger", "aria-label": `Delete zone ${name}` })));
 }
 

@@ -7,7 +7,7 @@ import type { Agent, ConflictRegion, SavedMap } from "../../generated/messages";
 import { kLayers } from "../scene/map_layers";
 
 export function mapPanel(app: App): HTMLElement {
-  return el("div", {}, layersSection(app), heightsSection(app), agentsSection(app), conflictsSection(app), mapsSection(app));
+  return el("div", {}, layersSection(app), heightsSection(app), gridSection(app), agentsSection(app), conflictsSection(app), mapsSection(app));
 }
 
 function layersSection(app: App): HTMLElement {
@@ -37,6 +37,18 @@ function heightsSection(app: App): HTMLElement {
   };
   change();
   return section("Heights", field("From", low), field("To", high), words);
+}
+
+function gridSection(app: App): HTMLElement {
+  const height = (value: number, title: string): HTMLInputElement => el("input", { type: "number", step: 0.1, value, class: "short", "aria-label": title });
+  const low = height(0.2, "Grid from, metres");
+  const high = height(1.5, "Grid to, metres");
+  const show = async (): Promise<void> => {
+    const asked = app.link.requestFrame("grid", { z: [Number(low.value), Number(high.value)] });
+    const answer = await app.news.tell(asked, ({ answer: { occupied, free } }) => `${counted(occupied, "cell")} occupied, ${counted(free, "cell")} free.`);
+    if (answer?.frame?.kind === "cells") app.grid.show(answer.frame, Number(low.value));
+  };
+  return section("2D grid", el("div", { class: "row" }, "from", low, "to", high, "m", button("Show", () => void show()), button("Hide", () => app.grid.hide())));
 }
 
 function agentsSection(app: App): HTMLElement {

@@ -1,11 +1,12 @@
 /** The menu in the scene: pages of buttons, and what they do. */
 import type { App } from "../app";
 import { Signal } from "../base/signal";
-import { correct, send, whatIf } from "../edit/robot_acts";
+import { correct, refer, send, whatIf } from "../edit/robot_acts";
 import { kTools, type Tool } from "../edit/selection";
 import type { Asset } from "../../generated/messages";
 import { evidenceWords } from "../panels/align_panel";
 import { fromYaw } from "../base/vec";
+import { vec } from "../scene/three_pose";
 import { keyboardPage, typed } from "./keyboard";
 import type { OwnFrame } from "./own_frame";
 import type { PanelButton, PanelPage } from "./panel_layout";
@@ -35,7 +36,7 @@ export class Menu {
     const renew = (): void => this.page.set(this.make());
     const { editor, align, world, news, draft } = app;
     const shown: { onChange: (watcher: () => void) => unknown }[] = [
-      editor.selection, editor.blocked, editor.question, editor.undoable, editor.redoable, align.current, world.agents, world.detections,
+      editor.selection, editor.blocked, editor.question, editor.undoable, editor.redoable, align.current, align.referred, world.agents, world.detections,
       world.paths, news.latest, draft.open, own.standing, room.scanning, this.atHand,
     ];
     for (const signal of shown) signal.onChange(renew);
@@ -77,6 +78,8 @@ export class Menu {
     anywhere: () => void this.app.align.refine(true),
     accept: () => void this.app.align.accept(),
     dropAlign: () => this.app.align.cancel(),
+    acceptReferred: () => void this.app.align.acceptReferred(),
+    dropReferred: () => this.app.align.dropReferred(),
     undoAlign: () => void this.app.align.undo(this.own.agent),
     up: () => this.app.align.nudge([0, 0, kNudge], 0),
     down: () => this.app.align.nudge([0, 0, -kNudge], 0),
@@ -141,10 +144,19 @@ export class Menu {
   }
 
   private aligning(): Omit<PanelPage, "words"> {
+    const referred = this.app.align.referred.value;
+    if (referred) {
+      return {
+        title: evidenceWords(referred.offer.evidence),
+        rows: [[{ id: "do acceptReferred", title: `Accept: found from ${referred.robot}`, main: true, share: 2 }, { id: "do dropReferred", title: "Cancel" }, kBack]],
+      };
+    }
     const now = this.app.align.current.value;
     if (!now) {
       const others = this.app.world.agents.value.filter(({ agent, occupied }) => agent !== this.own.agent && occupied > 0).slice(0, kMostRows);
-      return { title: "Align your room with…", rows: [...others.map(({ agent }) => [{ id: `with ${agent}`, title: agent }]), [kBack, { id: "do undoAlign", title: "Undo last", share: 2 }]] };
+      const robots = new Set(this.app.world.robots().map(({ agent }) => agent));
+      const rows = others.map(({ agent }) => [{ id: `with ${agent}`, title: agent, share: 2 }, ...(robots.has(agent) ? [{ id: `robot see/${agent}`, title: "I see it…" }] : [])]);
+      return { title: "Align your room with…", rows: [...rows, [kBack, { id: "do undoAlign", title: "Undo last", share: 2 }]] };
     }
     return {
       title: now.offer ? evidenceWords(now.offer.evidence) : "Take the blue map and put it onto the grey one",
@@ -184,6 +196,7 @@ export class Menu {
     if (verb === "what") void whatIf(this.app, robot);
     if (verb === "send") void send(this.app, robot);
     if (verb === "here") void correct(this.app, robot);
+    if (verb === "see") void refer(this.app, robot, (p) => vec(this.app.stage.own.worldToLocal(this.app.stage.fromMap(p))));
   }
 
   private async putAsset(asset: string): Promise<void> {
