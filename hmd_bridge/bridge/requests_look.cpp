@@ -82,9 +82,13 @@ void work_on(Desk& desk, const Ask& ask, const MinimapRequest& request) {
   desk.points[id];
   desk.asker.ask(
       {"in/downsample", encode(downsample, desk.now()), id, [&desk, id] { return all_there(desk.points, id); }, {}},
-      [&desk, ask, id](const Answer& answer) {
+      [&desk, ask, id, agent = request.agent](const Answer& answer) {
         const auto parts = std::move(desk.points.extract(id).mapped());
-        if (!answer.ok) return desk.hub.refuse(ask, code_of(answer.code), answer.message);
+        if (!answer.ok) {
+          // Who sends nothing but where it is has no submap, and is no agent to ingest.
+          const bool is_here = answer.code == "NO_AGENT" && desk.world.agent(agent) != nullptr;
+          return desk.hub.refuse(ask, is_here ? Code::kNoMap : code_of(answer.code), answer.message);
+        }
         std::vector<Eigen::Vector3f> points;
         for (const auto& [number, part] : parts) points.insert(points.end(), part.points.begin(), part.points.end());
         const FrameHead head{.kind = FrameKind::kPoints,

@@ -4,7 +4,7 @@ namespace concord::hmd {
 namespace {
 
 tl::unexpected<BadText> bad(std::string message, std::optional<std::int64_t> id = std::nullopt) {
-  return tl::unexpected<BadText>(BadText{id, std::move(message)});
+  return tl::unexpected<BadText>(BadText{id, std::move(message), false});
 }
 
 /// The id of an envelope, if it is one: read first, so that every later refusal reaches its asker.
@@ -55,7 +55,7 @@ tl::expected<ClientText, BadText> read_client_text(std::string_view text) {
     ClientRequest request{*id, {}};
     const std::optional<bool> read = read_request(*name, *body, request.body, problem);
     if (!read) return bad("no request is called " + name->substr(0, 40), id);
-    if (!*read) return bad(*name + problem.text, id);
+    if (!*read) return tl::unexpected<BadText>(BadText{id, *name + problem.text, problem.is_name});
     return ClientText(std::move(request));
   }
   const std::string* name = text_at(json, "notice");

@@ -26,6 +26,7 @@ using ClientText = std::variant<ClientRequest, NoticeBody>;
 struct BadText {
   std::optional<std::int64_t> id;
   std::string message;
+  bool is_name = false;  ///< the first that is wrong in it is a name
 };
 
 /// Reads strictly: one JSON object, an envelope of the schema, a body that its validator accepts.

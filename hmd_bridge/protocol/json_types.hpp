@@ -21,6 +21,7 @@ using Json = nlohmann::json;
 /// What a message was refused for: the first thing found, with the way to it.
 struct Problem {
   std::string text;
+  bool is_name = false;  ///< it is a text where a name must be
 
   bool say(const std::string& what) {
     if (text.empty()) text = what;
@@ -98,6 +99,7 @@ struct Name {
   using Value = std::string;
   static bool read(const Json& json, Value& out, Problem& problem) {
     if (!json.is_string() || !is_name(json.get_ref<const std::string&>())) {
+      problem.is_name = problem.is_name || (json.is_string() && problem.text.empty());
       return problem.say(" must be 1 to 40 of A-Z a-z 0-9 . _ -, beginning with a letter or digit");
     }
     out = json.get_ref<const std::string&>();

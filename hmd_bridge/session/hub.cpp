@@ -61,7 +61,8 @@ void Hub::text(Connection connection, std::string_view text, std::int64_t now) {
   if (!read) {
     const BadText& bad = read.error();
     if (session == nullptr) return close(connection, link, 1002, Code::kBadMessage, bad.message);
-    if (bad.id) return refuse_now(connection, link, *session, *bad.id, "?", Code::kBadMessage, bad.message, now);
+    const Code code = bad.is_name ? Code::kBadName : Code::kBadMessage;
+    if (bad.id) return refuse_now(connection, link, *session, *bad.id, "?", code, bad.message, now);
     count_refusal(connection, link, now);
     return tell(*session, "bad", event_text(BadEvent{bad.message.substr(0, 400)}));
   }

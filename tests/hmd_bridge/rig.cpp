@@ -58,6 +58,7 @@ class Rig::Parts {
     config.header_seconds = options.header_seconds;
     config.idle_seconds = options.idle_seconds;
     config.close_seconds = options.close_seconds;
+    config.listener = options.listener;
     Server server(io, node.hub(), gate, tokens, files, config, [&bus] { return bus.now(); });
     port = server.port();
     the_node = &node;

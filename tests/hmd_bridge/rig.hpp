@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "bridge_node.hpp"
@@ -19,6 +20,7 @@ class Rig {
     Role local_role = Role::kEdit;
     /// More processes on the same bus, made in the server's thread.
     std::function<std::shared_ptr<void>(const NodeContext&)> others;
+    std::optional<int> listener = {};  ///< Server::Config::listener
   };
   explicit Rig(const Options& options);
   Rig() : Rig(Options{}) {}

@@ -1,6 +1,8 @@
 // The server over real sockets with TLS: who gets in, and what no client can do to it.
 
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 
 #include "protocol/control.hpp"
 #include "rig.hpp"
@@ -56,6 +58,22 @@ class Served : public testing::Test {
 
   Rig rig{{.header_seconds = 1, .idle_seconds = 2, .close_seconds = 1, .local_role = Role::kEdit, .others = {}}};
 };
+
+TEST(GivenListener, IsServedBesideItsOwn) {
+  const int listener = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof(address);
+  ASSERT_EQ(bind(listener, reinterpret_cast<sockaddr*>(&address), size), 0);
+  ASSERT_EQ(::listen(listener, 8), 0);
+  ASSERT_EQ(getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size), 0);
+  const Rig rig({.others = {}, .listener = listener});
+  for (const std::uint16_t port : {ntohs(address.sin_port), rig.port()}) {
+    TlsClient client(port);
+    EXPECT_EQ(status_of(client.http(get("/"))), 200);
+  }
+}
 
 TEST_F(Served, FilesOfTheClientAndNothingElse) {
   TlsClient client(rig.port());

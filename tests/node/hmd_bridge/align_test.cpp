@@ -132,6 +132,12 @@ TEST_F(Aligning, AHeadsetRefersItselfToARobotThatItSees) {
   lab.run(1.5);
   EXPECT_LT(metres_off(transform_of(agent("quest")["T_map_agent"]), kT_left_right), kNear);
 
+  // It believes to see the robot in quite another place.
+  say();
+  const Json wrong =
+      bert.ask(ReferenceRequest{"robot1", pose_of(transform(3, 0, 0, 2) * kT_left_right.inverse() * T_agent_base)});
+  EXPECT_TRUE(has_code(wrong, "DIVERGED") || has_code(wrong, "LOW_OVERLAP")) << wrong;
+
   EXPECT_CODE(bert.ask(ReferenceRequest{"nobody", seen}), "NO_ROBOT");
   EXPECT_CODE(bert.ask(ReferenceRequest{"quest", seen}), "BAD_REQUEST");
   EXPECT_CODE(ana.ask(ReferenceRequest{"robot1", seen}), "BAD_FRAME") << "ana is no agent";

@@ -81,7 +81,9 @@ TEST_F(Working, MapsAreSavedListedAndLoaded) {
   const std::int64_t id = ana.next_id();
   const Json climb = {
       {"id", id}, {"request", "save"}, {"body", {{"map", "../x"}, {"formats", {"bt"}}, {"overwrite", false}}}};
-  EXPECT_CODE(ana.ask_text(id, climb.dump()), "BAD_MESSAGE") << "no name is a path";
+  EXPECT_CODE(ana.ask_text(id, climb.dump()), "BAD_NAME") << "no name is a path";
+  std::filesystem::create_directories(lab.site.state / "maps" / "busy.bt" / "in the way");
+  EXPECT_CODE(ana.ask(SaveRequest{"busy", {Format::kBt}, true}), "IO");
   EXPECT_CODE(ana.ask(LoadRequest{"hall", Format::kBt, "copy"}), "OK");
   EXPECT_CODE(ana.ask(LoadRequest{"hall", Format::kBt, "copy"}), "EXISTS");
   EXPECT_CODE(ana.ask(LoadRequest{"none", {}, {}}), "NOT_FOUND");

@@ -77,6 +77,9 @@ TEST_F(Working, AMinimapComesAsPointsBeforeItsAnswer) {
   EXPECT_EQ(ana.frames[0].head.count, answer["answer"]["points"]);
   EXPECT_EQ(answer["answer"]["points"], 13 * 13);
   EXPECT_CODE(ana.ask(MinimapRequest{"nobody", 0.5}), "NO_AGENT");
+  lab.bus->publish("in/cart/pose", encode(AgentPose{"cart", "odom", Transform::Identity(), lab.bus->now()}));
+  lab.run(1.5);
+  EXPECT_CODE(ana.ask(MinimapRequest{"cart", 0.5}), "NO_MAP") << "it sends nothing but where it is";
   EXPECT_CODE(ana.ask(MinimapRequest{"robot1", 0.01}), "RES_MISMATCH");
 }
 

@@ -116,6 +116,18 @@ TEST_F(Bridge, IdsCountUpAndMalformedRequestsReachTheirAsker) {
   EXPECT_CODE(ana.ask_text(7, R"({"id":7,"request":"agents","body":{}})"), "OK");
 }
 
+TEST(BridgeAlone, SixtyFourRequestsMayWaitAndNoMore) {
+  Lab lab(Lab::kWithoutMerge);
+  Client ana(lab);
+  EXPECT_CODE(ana.hello(), "OK");
+  for (std::int64_t id = 10; id < 75; ++id) {
+    lab.bridge->hub().text(ana.connection, request_text(id, UndoRequest{"edit"}), lab.bus->now());
+  }
+  ana.read();
+  ASSERT_EQ(ana.answers.size(), 2u) << "hello, and the one too many";
+  EXPECT_CODE(ana.answers[74], "BUSY");
+}
+
 TEST_F(Bridge, RequestsBeyondTheRateAreRefusedAndAFloodIsCutOff) {
   EXPECT_CODE(ana.hello(), "OK");
   int rate = 0;
