@@ -9,6 +9,7 @@ namespace concord {
 namespace {
 
 constexpr double kPatience = 15.0;  // seconds: the bridge itself gives up after 10
+constexpr std::int64_t kPoll = 100'000;
 
 hmd::Pose pose_of(const Transform& T) {
   const Eigen::Vector3d p = T.translation();
@@ -26,7 +27,11 @@ tl::expected<std::unique_ptr<DemoPerson>, Failure> DemoPerson::enter(Live& live,
   }
   auto client = hmd::BridgeClient::enter(here, name);
   if (!client) return fail(Exit::kNoAnswer, "NO_ANSWER", client.error());
-  return std::unique_ptr<DemoPerson>(new DemoPerson(live, page, std::move(*client)));
+  std::unique_ptr<DemoPerson> person(new DemoPerson(live, page, std::move(*client)));
+  // Who does not answer pings is taken to have gone.
+  live.bus().every(
+      kPoll, [&client = *person->client_] { client.poll(); }, person->here_);
+  return person;
 }
 
 DemoPerson::Step DemoPerson::place(const std::string& agent, const Transform& T_map_agent) {

@@ -36,6 +36,7 @@ class DemoPerson {
   Live& live_;
   std::string page_;
   std::unique_ptr<hmd::BridgeClient> client_;
+  std::shared_ptr<bool> here_ = std::make_shared<bool>(true);  ///< ends what is done each while
 };
 
 }  // namespace concord
