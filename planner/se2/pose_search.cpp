@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "planner/footprint/hull_cells.hpp"
+#include "planner/se2/narrow_cells.hpp"
 #include "planner/se2/shorten_motions.hpp"
 
 namespace concord {
@@ -12,6 +13,8 @@ namespace {
 
 constexpr std::array kDensities{GuideDensity{1, 0}, GuideDensity{0.5, 8}, GuideDensity{0.25, 16}};
 constexpr std::uint64_t kSeed = 20'260'101;
+/// So often is the grid path led round a place that is too narrow.
+constexpr int kMostDetours = 30;
 
 Cell cell_of(const Eigen::Vector2d& p) {
   return {static_cast<std::int32_t>(std::floor(p.x())), static_cast<std::int32_t>(std::floor(p.y()))};
@@ -83,6 +86,39 @@ void PoseSearch::update(const Window& window) {
   ways_->update(wide, [&](OpenGrid& ways) { open_cells(ways, wide); });
 }
 
+std::optional<std::vector<Cell>> PoseSearch::grid_path(Cell start, Cell goal, const PoseEffort& effort) {
+  ClearanceSearch::Limits limits;
+  limits.expanded = effort.cells;
+  auto path = ways_->clear(start, goal, limits);
+  if (!path) return std::nullopt;
+  // The disc gets through where the footprint does not, whatever its yaw: such places are closed for this request.
+  constexpr int kAround = 4;
+  std::vector<Window> closed;
+  for (int i = 0; i < kMostDetours && !effort.stop(); ++i) {
+    const auto narrow = first_too_narrow(room_, path->cells, room_.footprint().circumscribed());
+    if (!narrow) break;
+    const Window window{
+        {std::max(0, narrow->x - kAround), std::max(0, narrow->y - kAround)},
+        {std::min(grid_.width() - 1, narrow->x + kAround), std::min(grid_.height() - 1, narrow->y + kAround)}};
+    closed.push_back(window);
+    const std::uint16_t least = field_.squared(*narrow);
+    ways_->update(window, [&](OpenGrid& ways) {
+      for (int y = window.low.y; y <= window.high.y; ++y) {
+        for (int x = window.low.x; x <= window.high.x; ++x) {
+          if (field_.squared({x, y}) <= least) ways.set({x, y}, false);
+        }
+      }
+    });
+    auto detour = ways_->clear(start, goal, limits);
+    if (!detour) break;
+    path = std::move(detour);
+  }
+  for (const Window& window : closed) {
+    ways_->update(window, [&](OpenGrid& ways) { open_cells(ways, window); });
+  }
+  return std::move(path->cells);
+}
+
 SampleRegion PoseSearch::anywhere(Cell from) {
   SampleRegion region;
   region.spread = 1;
@@ -125,11 +161,9 @@ PoseRoute PoseSearch::find(const Pose& start, const Pose& goal, const PoseEffort
   if (!is_on(start) || !room_.stands(start)) return {PoseOutcome::kStartBlocked, PoseMeans::kNone, {}, 0, 0};
   if (!is_on(goal) || !room_.stands(goal)) return {PoseOutcome::kGoalBlocked, PoseMeans::kNone, {}, 0, 0};
   if (!ways_->connected(cell_of(start.p), cell_of(goal.p))) return {PoseOutcome::kNoWay, PoseMeans::kNone, {}, 0, 0};
-  ClearanceSearch::Limits limits;
-  limits.expanded = effort.cells;
-  const auto path = ways_->clear(cell_of(start.p), cell_of(goal.p), limits);
-  if (!path) return route;
-  FoundMotions found = search(path->cells, start, goal, effort, route);
+  const auto cells = grid_path(cell_of(start.p), cell_of(goal.p), effort);
+  if (!cells) return route;
+  FoundMotions found = search(*cells, start, goal, effort, route);
   if (!found.stopped && found.motions.empty()) return route;
   if (!found.stopped) found = shorten(found.motions, room_, steering_, {effort.shortening, effort.stop});
   if (found.stopped) {

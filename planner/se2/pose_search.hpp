@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "planner/se2/sampled_search.hpp"
@@ -68,6 +69,8 @@ class PoseSearch {
  private:
   /// Of `window`, which must lie on the grid: whether the footprint's inner disc may be anywhere in a cell.
   void open_cells(OpenGrid& to, const Window& window) const;
+  /// Cells that keep away from walls, past places that the footprint does not fit into where there is a way round.
+  [[nodiscard]] std::optional<std::vector<Cell>> grid_path(Cell start, Cell goal, const PoseEffort& effort);
   [[nodiscard]] SampleRegion anywhere(Cell from);
   [[nodiscard]] FoundMotions search(const std::vector<Cell>& cells, const Pose& start, const Pose& goal,
                                     const PoseEffort& effort, PoseRoute& route);

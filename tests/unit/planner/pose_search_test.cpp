@@ -106,7 +106,7 @@ PoseEffort little() {
 
 TEST(PoseSearch, EveryPathStandsAndEveryReasonIsRight) {
   int found = 0, none = 0, blocked = 0;
-  for (unsigned seed = 0; seed < 250; ++seed) {
+  for (unsigned seed = 0; seed < 100; ++seed) {
     std::mt19937 random(seed);
     const Plain plain = rooms(random, 30 + static_cast<int>(random() % 40), 30 + static_cast<int>(random() % 40),
                               2 + static_cast<int>(random() % 14));
@@ -142,13 +142,13 @@ TEST(PoseSearch, EveryPathStandsAndEveryReasonIsRight) {
       }
     }
   }
-  EXPECT_GT(found, 150);
-  EXPECT_GT(none, 20);
-  EXPECT_GT(blocked, 100);
+  EXPECT_GT(found, 35);
+  EXPECT_GT(none, 5);
+  EXPECT_GT(blocked, 40);
 }
 
 TEST(PoseSearch, AfterChangesItIsAsIfItWereNew) {
-  for (unsigned seed = 0; seed < 40; ++seed) {
+  for (unsigned seed = 0; seed < 15; ++seed) {
     std::mt19937 random(seed);
     Plain plain = rooms(random, 50, 40, 9);
     OpenGrid grid = test::to_grid(plain);
