@@ -21,6 +21,9 @@ constexpr double kMinFreeShare = 0.2;
 
 Result<AlignMap> make(Result<SurfacePoints> points, double resolution, int threads) {
   if (!points) return tl::unexpected(points.error());
+  if (are_scattered(*points, resolution)) {
+    return refuse(Code::kTooLarge, "the surface is scattered over too much space; align a coarser copy of the map");
+  }
   AlignMap out;
   out.resolution = resolution;
   out.points = without_loners(std::move(*points), resolution, threads);

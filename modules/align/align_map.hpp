@@ -28,9 +28,9 @@ struct AlignMap {
 /// Finest first, as AlignMap has them. @pre a resolution that make_align_map takes.
 [[nodiscard]] std::vector<SurfaceLevel> make_levels(const SurfacePoints& points, double resolution, int threads);
 
-/// Refused: see surface_points.
+/// Refused: see surface_points and are_scattered (kTooLarge).
 [[nodiscard]] Result<AlignMap> make_align_map(const BrickMap& map, double resolution, int threads);
-/// A cloud; `resolution` is about the distance between its points. Refused: see surface_points; a resolution below
+/// A cloud; `resolution` is about the distance between its points. Refused: as above; a resolution below
 /// kMinAlignResolution (kBadResolution).
 [[nodiscard]] Result<AlignMap> make_align_map(std::span<const Eigen::Vector3f> cloud, double resolution, int threads);
 

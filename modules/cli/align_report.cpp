@@ -1,6 +1,7 @@
 #include "cli/align_report.hpp"
 
 #include <cmath>
+#include <cstdio>
 
 #include "cli/numbers.hpp"
 #include "cli/report.hpp"
@@ -93,6 +94,11 @@ nlohmann::json to_json(const AlignResult& result) {
               {"slip_m", result.slip},
               {"slip_rad", result.slip_angle}});
   return out;
+}
+
+Exit say_undrawn(const Failure& failure, Exit verdict) {
+  std::fprintf(stderr, "concord: no picture: %s (%s)\n", failure.message.c_str(), failure.code.c_str());
+  return verdict == Exit::kDone ? failure.exit : verdict;
 }
 
 std::string pair_of(const AlignResult& result) {

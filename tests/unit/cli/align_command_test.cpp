@@ -103,6 +103,16 @@ TEST_F(AlignFilesTest, TakesAGuessAndDrawsBeforeAndAfter) {
   EXPECT_GT(fs::file_size(path("out.png")), 10'000U);
 }
 
+/// What was found is printed whatever becomes of the picture, and in JSON there is nothing else.
+TEST_F(AlignFilesTest, APictureThatFailsTakesNothingFromWhatWasFound) {
+  const std::string target = write("left.pcd", pcd(left_part())), source = write("right.pcd", pcd(right_part()));
+  EXPECT_EQ(align({source, target, "--picture", path("none/out.png")}), 2);
+  expect_found();
+  const std::string one = write("one.pcd", pcd({{0, 0, 0}, {1, 0, 0}}));
+  EXPECT_EQ(align({one, target, "--picture", path("out.png")}), 3) << "nothing to draw";
+  EXPECT_EQ(said_["reason"], "NO_MAP");
+}
+
 TEST_F(AlignFilesTest, AnotherRoomIsRefusedWithTheFigures) {
   const std::string target = write("left.ply", ply(left_part())), source = write("other.ply", ply(other_room()));
   EXPECT_EQ(align({source, target}), 3);
