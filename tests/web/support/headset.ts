@@ -21,7 +21,12 @@ export async function enterRoom(page: Page, room: string): Promise<void> {
 
 /** Until the menu says so. */
 export async function words(page: Page, text: string): Promise<void> {
-  await page.waitForFunction((said) => (window as unknown as HeadsetPage).concordImmersive.panel.pageShown.words.includes(said), text);
+  try {
+    await page.waitForFunction((said) => (window as unknown as HeadsetPage).concordImmersive.panel.pageShown.words.includes(said), text);
+  } catch (error) {
+    const { title, words: said } = await page.evaluate(() => (window as unknown as HeadsetPage).concordImmersive.panel.pageShown);
+    throw new Error(`the menu never said "${text}"; it says "${title}": "${said}"`, { cause: error });
+  }
 }
 
 /** Turns the head towards a place of the room (y up), does something, and turns it back. */
