@@ -6,7 +6,7 @@ import { after, before, test } from "node:test";
 import type { Browser, Page } from "playwright-core";
 import type { Pose } from "../../../hmd_bridge/web/generated/messages";
 import { distance, fromYaw, toXr, yawOf, type Vec3 } from "../../../hmd_bridge/web/src/base/vec";
-import { aimAt, drag, enterRoom, looking, press, pressButton, words, type HeadsetPage } from "../support/headset";
+import { aimAt, drag, enterRoom, hearNews, looking, press, pressButton, words, type HeadsetPage } from "../support/headset";
 import { canvasShot, launch, nextFrames, open, pageShot, settled } from "../support/page";
 import { meshOf, Robot, type Robots } from "../support/room";
 import { nativeClient } from "../support/paths";
@@ -84,6 +84,7 @@ test("a person enters a captured room, scans it, aligns it by hand, corrects it,
   const { page, errors } = await open(browser, stack!.url, (fresh) => enterRoom(fresh, room), { width: 560, height: 400 });
   await page.locator("#enter").click();
   await page.waitForFunction(() => (window as unknown as HeadsetPage).concordImmersive.presenting);
+  await hearNews(page);
   await page.waitForFunction(() => (window as unknown as HeadsetPage).concordImmersive.uploader.occupied.value > 500);
   await page.waitForFunction(() => (window as unknown as HeadsetPage).concordImmersive.uploader.looks.value >= 4);
   await canvasShot(page, "stack-1-scanning");
