@@ -19,6 +19,7 @@ namespace asio = boost::asio;
 
 constexpr std::chrono::milliseconds kWait(5);  ///< the bus's timers are due to so much
 constexpr std::chrono::milliseconds kFarewell(300);
+constexpr int kTurns = 64;  ///< of clients, between two of the bus
 
 StaticFiles load_files(const std::filesystem::path& web) {
   StaticFiles files;
@@ -102,7 +103,9 @@ void BridgeProcess::wait(LcmBus& bus) {
     parts_->watch(bus);
   }
   parts_->io.run_one_for(kWait);
-  parts_->io.poll();
+  // Clients that take all they can get always have more to do: the bus gets its turn all the same.
+  for (int turn = 0; turn < kTurns && parts_->io.poll_one() > 0; ++turn) {
+  }
   bus.spin_once(0);  // its timers
   parts_->server.pump();
 }

@@ -73,6 +73,7 @@ class Client:
             with urllib.request.urlopen(request, context=context) as answer:
                 ticket = {"ticket": json.load(answer)["ticket"]}
         self.socket, self.id, self.taken = WebSocket(address), 0, 0
+        self.complete = {"synced": False, "revision": 0}
         self.chunks = {}  # (block x, y, z, number) -> 512 bytes
         self.hello = self.ask("hello", {"version": "hmd.v1", "name": "native", "device": "Python", **ticket})
         self.grant()
@@ -95,15 +96,17 @@ class Client:
 
     def wait_complete(self, least):
         """Until everything that is in view has come, as of the bridge's revision `least` or later."""
-        while True:
-            message = self.next()
-            if message.get("event") == "complete" and message["body"]["synced"] and message["body"]["revision"] >= least:
-                return message["body"]["revision"]
+        while not (self.complete["synced"] and self.complete["revision"] >= least):
+            self.next()
+        return self.complete["revision"]
 
     def next(self):
         message = self.socket.read()
         if isinstance(message, str):
-            return json.loads(message)
+            message = json.loads(message)
+            if message.get("event") == "complete":  # it may come before the answer to what it follows from
+                self.complete = message["body"]
+            return message
         self.take_frame(message)
         self.taken += len(message)
         self.grant()

@@ -82,8 +82,9 @@ std::optional<Hub::Outgoing> Hub::next_block(Session& session) {
 
 SharedText Hub::complete_event(Session& session) {
   for (auto& [stream, view] : session.views) {
-    if (!view.complete()) continue;
     const ShownLayer& layer = *layers_.find(stream);
+    // What has changed and was not told to views yet is lacking, too.
+    if (!view.complete() || !layer.changed.empty()) continue;
     const Session::Told now{layer.revision, layer.map_revision, layer.synced};
     Session::Told& told = session.told_complete[stream];
     if (told == now) continue;

@@ -66,7 +66,8 @@ class Rig::Parts {
     ready.set_value();
     while (!stop) {
       io.run_one_for(std::chrono::milliseconds(1));
-      io.poll();
+      for (int turn = 0; turn < 64 && io.poll_one() > 0; ++turn) {
+      }
       bus.spin_once(0);
       server.pump();
       if (awaited && awaited(node)) {

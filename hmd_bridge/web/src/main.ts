@@ -66,6 +66,7 @@ async function main(): Promise<void> {
   const bar = document.querySelector<HTMLElement>("#bar")!;
 
   const world = new World();
+  world.own = own?.agent ?? null;
   const news = new News();
   const stage = new Stage(canvas);
   new ResizeObserver(() => stage.resize(view.clientWidth, view.clientHeight)).observe(view);
@@ -90,7 +91,7 @@ async function main(): Promise<void> {
     if (state.state !== "refused") return;
     if (state.code === "DENIED" && own) {
       // Who may only look cannot be an agent, but can look.
-      own = null;
+      own = world.own = null;
       link.connect();
     } else if (state.code === "BAD_TOKEN") {
       dialog.showModal();

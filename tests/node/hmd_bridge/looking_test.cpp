@@ -35,6 +35,22 @@ TEST_F(Working, AViewComesWholeThenJustWhatChanges) {
   EXPECT_CODE(ana.ask(ViewCloseRequest{0}), "NOT_FOUND");
 }
 
+TEST_F(Working, CompleteIsSaidWhenTheBlocksHaveComeAndNotBefore) {
+  EXPECT_CODE(ana.ask(ViewRequest{Layer::kMap, {}, Frame::kMap, {0, 0, 0}, {100}, {}}), "OK");
+  lab.run(0.2);
+  ana.read();
+  const std::int64_t before = ana.events["complete"]["revision"];
+  ana.frames.clear();
+  const std::string edit = request_text(ana.next_id(), add(Voxels{0.1, {{{20, 20, 3, 20, 20, 3}}}}));
+  lab.bridge->hub().text(ana.connection, edit, lab.bus->now());
+  const bool said = lab.run_until(2, [&] {
+    ana.read();
+    return ana.events["complete"]["revision"] > before;
+  });
+  ASSERT_TRUE(said);
+  EXPECT_EQ(ana.frames.size(), 1u);
+}
+
 TEST_F(Working, WithoutCreditNoBlockComes) {
   Client bert(lab);
   HelloRequest hello;

@@ -58,9 +58,11 @@ VoxelMask mask_of(std::initializer_list<int> locals) {
 
 void drain(ClientView& view, BlockStore& store, Mirror& mirror, std::size_t most = SIZE_MAX) {
   while (most-- > 0) {
-    for (const BlockKey& key : view.take_forgotten()) mirror.forget(key);
+    const std::vector<BlockKey> forgotten = view.take_forgotten();  // of one level
+    for (const BlockKey& key : forgotten) mirror.forget(key);
     const auto due = view.nearest();
-    if (!due) return;
+    if (!due && forgotten.empty()) return;
+    if (!due) continue;
     mirror.take(*store.frame(due->key, due->since));
     view.sent(store, due->key);
   }

@@ -3,7 +3,7 @@ import { after, afterEach, before, beforeEach, test } from "node:test";
 import type { Browser, Page } from "playwright-core";
 import { FakeServer } from "../support/fake_server";
 import { canvasShot, launch, nextFrames, open, pageShot, webFolder } from "../support/page";
-import { aimAt, enterRoom, press, pressButton, standing, type HeadsetPage } from "../support/headset";
+import { aimAt, enterRoom, hearNews, press, pressButton, standing, words, type HeadsetPage } from "../support/headset";
 
 let browser: Browser;
 let server: FakeServer;
@@ -16,6 +16,7 @@ async function entered(room: string): Promise<{ page: Page; errors: string[] }> 
   const { page, errors } = await open(browser, await server.start(), (fresh) => enterRoom(fresh, room), { width: 560, height: 400 }); // few pixels: all of them are drawn by software
   await page.locator("#enter").click();
   await page.waitForFunction(() => (window as unknown as HeadsetPage).concordImmersive.presenting);
+  await hearNews(page);
   return { page, errors };
 }
 
@@ -42,7 +43,7 @@ test("a person enters a captured office: its mesh is sent, the menu is there, ed
   await nextFrames(page);
   await canvasShot(page, "headset-1-scanning");
   await pressButton(page, "do sendMap");
-  await page.waitForFunction(() => (window as unknown as HeadsetPage).concordImmersive.panel.pageShown.words.includes("4711"));
+  await words(page, "4711");
   const notice = server.notices.findLast(({ name }) => name === "tracking")!.body as { state: string; T_own_head: { position: number[] } };
   assert.equal(notice.state, "ok");
   assert(Math.abs(notice.T_own_head.position[2]! - 1.65) < 0.05, "z up");
@@ -91,7 +92,7 @@ test("the small map is taken in the hand, put onto the other's, refined and acce
   await press(page, "select", false);
   const size = server.map.size;
   await pressButton(page, "do add");
-  await page.waitForFunction(() => (window as unknown as HeadsetPage).concordImmersive.panel.pageShown.words.includes("added"));
+  await words(page, "added");
   assert(server.map.size > size);
   await page.waitForFunction(() => (window as unknown as HeadsetPage).concord.layers.settled);
   await nextFrames(page);
@@ -107,7 +108,7 @@ test("the small map is taken in the hand, put onto the other's, refined and acce
   for (const key of ["d", "e", "s", "k"]) await pressButton(page, `key ${key}`);
   await canvasShot(page, "headset-8-keyboard");
   await pressButton(page, "text done");
-  await page.waitForFunction(() => (window as unknown as HeadsetPage).concordImmersive.panel.pageShown.words.includes("label"));
+  await words(page, "label");
   assert.equal((server.lastAsked("label") as { class_name: string }).class_name, "desk");
 
   // A path, blocked, and the other one.

@@ -6,7 +6,7 @@ import { after, before, test } from "node:test";
 import type { Browser, Page } from "playwright-core";
 import type { Pose } from "../../../hmd_bridge/web/generated/messages";
 import { distance, fromYaw, toXr, yawOf, type Vec3 } from "../../../hmd_bridge/web/src/base/vec";
-import { aimAt, drag, enterRoom, looking, press, pressButton, words, type HeadsetPage } from "../support/headset";
+import { aimAt, drag, enterRoom, hearNews, looking, press, pressButton, words, type HeadsetPage } from "../support/headset";
 import { canvasShot, launch, nextFrames, open, pageShot, settled } from "../support/page";
 import { meshOf, Robot, type Robots } from "../support/room";
 import { nativeClient } from "../support/paths";
@@ -28,8 +28,8 @@ const kScenes: Record<string, Scene> = {
     T_odom_room: { position: [2, -1, 0], rotation: fromYaw(0.5) },
     base: [-0.3, 0.9, 0],
     eyes: [[0, 0.9, 0.6], [-0.4, 0.2, 0.8], [0.1, -0.4, 0.5], [0.2, -0.9, 0.8], [-0.6, -0.8, 0.6], [0.3, -1.6, 0.6], [0.3, -2.6, 0.8]],
-    goal: [-0.3, -1, 0],
-    obstacle: [[-0.6, 0.2, 0], [-0.1, -0.1, 0]],
+    goal: [0.3, -1, 0],
+    obstacle: [[0.05, -0.5, 0], [0.3, -0.65, 0]],
     added: [[0.6, -0.9, 0], [1.0, -1.1, 0]],
   },
   living_room: {
@@ -84,6 +84,7 @@ test("a person enters a captured room, scans it, aligns it by hand, corrects it,
   const { page, errors } = await open(browser, stack!.url, (fresh) => enterRoom(fresh, room), { width: 560, height: 400 });
   await page.locator("#enter").click();
   await page.waitForFunction(() => (window as unknown as HeadsetPage).concordImmersive.presenting);
+  await hearNews(page);
   await page.waitForFunction(() => (window as unknown as HeadsetPage).concordImmersive.uploader.occupied.value > 500);
   await page.waitForFunction(() => (window as unknown as HeadsetPage).concordImmersive.uploader.looks.value >= 4);
   await canvasShot(page, "stack-1-scanning");

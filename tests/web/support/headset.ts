@@ -11,6 +11,7 @@ export interface HeadsetPage {
   concord: App;
   concordImmersive: Immersive;
   xrDevice: XRDevice;
+  said: string[];
 }
 
 /** Makes a fresh page one of a Quest 3 in a captured room. */
@@ -19,9 +20,24 @@ export async function enterRoom(page: Page, room: string): Promise<void> {
   await page.addInitScript({ path: emulatorFile });
 }
 
-/** Until the menu says so. */
+/** Keeps all that the page tells the person: it is shown for some seconds only, which may be one frame here. */
+export async function hearNews(page: Page): Promise<void> {
+  await page.evaluate(() => {
+    const heard = window as unknown as HeadsetPage;
+    heard.said = [];
+    heard.concord.news.latest.onChange((item) => item && heard.said.push(item.text));
+  });
+}
+
+/** Until the person has been told so, since the last time. */
 export async function words(page: Page, text: string): Promise<void> {
-  await page.waitForFunction((said) => (window as unknown as HeadsetPage).concordImmersive.panel.pageShown.words.includes(said), text);
+  try {
+    await page.waitForFunction((wanted) => (window as unknown as HeadsetPage).said.some((said) => said.includes(wanted)), text, { polling: 100 });
+  } catch (error) {
+    const said = await page.evaluate(() => (window as unknown as HeadsetPage).said);
+    throw new Error(`nobody was told "${text}", but: ${JSON.stringify(said)}`, { cause: error });
+  }
+  await page.evaluate(() => ((window as unknown as HeadsetPage).said = []));
 }
 
 /** Turns the head towards a place of the room (y up), does something, and turns it back. */

@@ -23,13 +23,16 @@ export class World {
   /** Blocks that wait at the server because this client is slow. */
   readonly lacking = new Signal<number>(0);
 
+  /** The agent that this device is; none on a desk. */
+  own: string | null = null;
+
   agent(name: string): Agent | undefined {
     return this.agents.value.find(({ agent }) => agent === name);
   }
 
   /** Those that can be sent somewhere. */
   robots(): Agent[] {
-    return this.agents.value.filter(({ type }) => type !== "headset" && type !== "map");
+    return this.agents.value.filter(({ agent, type }) => type !== "headset" && type !== "map" && agent !== this.own);
   }
 
   setPath(path: Path): void {

@@ -15,7 +15,7 @@ export class WorldOverlay {
     private readonly resolution: number,
     private readonly drawn: () => void,
   ) {
-    this.redraw(world.poses, (poses) => poses.map(robotObject));
+    this.redraw(world.poses, (poses) => poses.filter(({ agent }) => agent !== world.own).map(robotObject));
     this.redraw(world.people, (people) => people.flatMap(personObjects));
     this.redraw(world.zones, (zones) =>
       zones.map((zone) => this.placed(zone.T_map_zone, shapeObject(zone.volume, this.resolution, zone.zone_kind === "no_go" ? kNoGo : kAllowContact, 0.16))));
