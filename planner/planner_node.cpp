@@ -79,6 +79,7 @@ void PlannerNode::project() {
 
 /// What changed, and once a second what did not: the bus may lose a path, and silence means that none is kept.
 void PlannerNode::speak() {
+  for (const Planner::Reply& answered : planner_.serve(moment())) reply(answered);
   for (const Path& path : planner_.replan(moment())) {
     context_.counters.add("paths." + path.status);
     publish(path);
@@ -89,12 +90,18 @@ void PlannerNode::speak() {
 
 void PlannerNode::on_request(const PathRequest& request) {
   project();
-  auto [path, ended] = planner_.request(request, context_.site.agent(request.robot).radius, moment());
+  reply(planner_.request(request, context_.site.agent(request.robot).radius, moment()));
+}
+
+/// Without a path the request waits for its turn.
+void PlannerNode::reply(const Planner::Reply& reply) {
+  if (!reply.path) return;
+  Path path = *reply.path;
   const bool ok = path.status == name(Reason::kOk);
   if (!ok && !receiver_.synced()) path.message += "; the map has not fully arrived yet";
   if (ok && !zones_.synced()) path.message += "; a change of the zones is under way";
   context_.counters.add("paths." + path.status);
-  if (ended) publish(*ended);
+  if (reply.ended) publish(*reply.ended);
   publish(path);
   answer(context_.bus, {path.id, context_.process, ok, path.status, path.message, path.map_revision,
                         static_cast<std::int64_t>(path.points.size())});

@@ -25,6 +25,7 @@ class PlannerNode {
   void on_request(const PathRequest& request);
   void project();
   void speak();
+  void reply(const Planner::Reply& reply);
   void publish(const Path& path);
   [[nodiscard]] Planner::Moment moment() const;
 

@@ -164,12 +164,4 @@ const ZoneLayer& no_zones() {
   return none;
 }
 
-Ground ground(const Grid& grid, const ZoneLayer& zones, BrickIndex column) {
-  const std::uint64_t free = free_plane(grid.cells().find(column));
-  if (!zones.has_no_go() && !zones.has_contact()) return {free, free, free};
-  const std::uint64_t forbidden = zones.no_go(column);
-  const std::uint64_t passable = free & ~forbidden;
-  return {free, passable, passable | (zones.contact(column) & ~forbidden)};
-}
-
 }  // namespace concord

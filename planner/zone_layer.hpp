@@ -93,12 +93,4 @@ class ZoneLayer {
 
 [[nodiscard]] const ZoneLayer& no_zones();
 
-/// What the cells of a column of bricks are to a robot; bit x + 8 y.
-struct Ground {
-  std::uint64_t free = 0;       ///< as the grid says
-  std::uint64_t passable = 0;   ///< its centre may be there: free, and in no no-go zone
-  std::uint64_t touchable = 0;  ///< its body may be over it: passable, or contact is allowed and no no-go zone there
-};
-[[nodiscard]] Ground ground(const Grid& grid, const ZoneLayer& zones, BrickIndex column);
-
 }  // namespace concord
