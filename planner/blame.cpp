@@ -53,7 +53,8 @@ std::string at_place(const Eigen::Vector2d& p) { return describe({"place", p, {}
 
 Finding what_closes(const RobotTask& task, const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
   FreeSpace space(task.terrain(), task.in_cells());
-  Finding finding{Reason::kNoValidPath, "no way through: walls, or space not yet observed, cut the goal off", {}, 0, {}, false};
+  Finding finding{
+      Reason::kNoValidPath, "no way through: walls, or space not yet observed, cut the goal off", {}, 0, {}, false};
   const auto blame = [&](Reason reason, const std::vector<Cell>& way, const std::string& message) {
     finding.reason = reason;
     const auto closed = std::find_if(way.begin(), way.end(), [&](Cell cell) { return !space.is_open(cell); });

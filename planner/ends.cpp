@@ -68,7 +68,8 @@ std::string describe(const End& end) {
 
 std::optional<Objection> check_cell(const Terrain& terrain, const End& end) {
   const Eigen::Vector2d p_cells = end.position / terrain.resolution();
-  if (p_cells.cwiseAbs().maxCoeff() >= kMaxVoxel) return Objection{end.outside, describe(end) + " lies outside the map"};
+  if (p_cells.cwiseAbs().maxCoeff() >= kMaxVoxel)
+    return Objection{end.outside, describe(end) + " lies outside the map"};
   const Cell cell = cell_of(p_cells);
   const LogOdds state = terrain.grid().at(cell);
   if (const std::string* zone = terrain.zones().no_go_at(cell)) {
@@ -91,8 +92,8 @@ Objection too_near(const Terrain& terrain, const End& end, double radius) {
   FreeSpace without(terrain.without(Ignoring::kNoGo), radius / r);
   const bool is_zone_alone = zone && without.sees(p, p);
   return {end.clearance, describe(end) + " is " + metres(gap) + " from " +
-                             (zone ? no_go(zone->name) : "the nearest wall or unobserved cell") +
-                             ", the robot needs " + metres(radius) +
+                             (zone ? no_go(zone->name) : "the nearest wall or unobserved cell") + ", the robot needs " +
+                             metres(radius) +
                              (zone && !is_zone_alone ? "; a wall or unobserved cell is too near as well" : "")};
 }
 

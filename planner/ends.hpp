@@ -35,8 +35,8 @@ struct Objection {
 [[nodiscard]] std::string metres(double value);
 [[nodiscard]] std::string describe(const End& end);
 
-/// The cells around `p` (in cells) that the robot can go to in a straight line, the nearest first. Those one step away from p's own
-/// are left out where that one serves: a search gets there by itself.
+/// The cells around `p` (in cells) that the robot can go to in a straight line, the nearest first. Those one step away
+/// from p's own are left out where that one serves: a search gets there by itself.
 [[nodiscard]] std::vector<Cell> anchors(FreeSpace& space, const Eigen::Vector2d& p);
 
 }  // namespace concord

@@ -85,7 +85,8 @@ std::optional<Finding> Leg::check(const RobotTask& task) {
 
 Finding Leg::find(const RobotTask& task) {
   if (!anchors_) return {Reason::kOk, {}, {from_.position, to_.position}, 0, {}, false};
-  const auto grid = task.grids.at(task.in_cells(), Ignoring::kNothing, *task.grids.areas().around(cell_of(in_cells(task).from)));
+  const auto grid =
+      task.grids.at(task.in_cells(), Ignoring::kNothing, *task.grids.areas().around(cell_of(in_cells(task).from)));
   kept_.emplace(grid->paths(), task.most_expanded);
   (void)kept_->plan(grid->local(anchors_->first), grid->local(anchors_->second));
   grid_ = grid;
@@ -128,8 +129,8 @@ std::shared_ptr<RobotGrid> Leg::bind(const RobotTask& task) {
 bool Leg::begin_at(RobotGrid& grid, const Eigen::Vector2d& p) {
   const std::vector<Cell>& cells = kept_->path()->cells;
   const auto squared = [&](Cell cell) { return (centre_of(grid.global(cell)) - p).squaredNorm(); };
-  const auto nearest = std::min_element(cells.begin(), cells.end(),
-                                        [&](Cell a, Cell b) { return squared(a) < squared(b); });
+  const auto nearest =
+      std::min_element(cells.begin(), cells.end(), [&](Cell a, Cell b) { return squared(a) < squared(b); });
   if (squared(*nearest) > kBeside * kBeside || !grid.space().sees(p, centre_of(grid.global(*nearest)))) return false;
   kept_->begin_at(static_cast<std::size_t>(nearest - cells.begin()));
   return true;

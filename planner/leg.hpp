@@ -19,7 +19,7 @@ inline constexpr std::int64_t kMaxExpanded = 1'500'000;
 /// For whom, and on what.
 struct RobotTask {
   RobotGrids& grids;
-  double radius;                             ///< metres
+  double radius;                              ///< metres
   std::int64_t most_expanded = kMaxExpanded;  ///< by one search
 
   [[nodiscard]] const Terrain& terrain() const { return grids.terrain(); }
@@ -35,8 +35,8 @@ struct Changed {
 /// What came of looking for a way.
 struct Finding {
   Reason reason = Reason::kOk;
-  std::string message;                    ///< for a person; empty if there is a way
-  std::vector<Eigen::Vector2d> points;    ///< metres, the ends exact; empty unless there is a way
+  std::string message;                  ///< for a person; empty if there is a way
+  std::vector<Eigen::Vector2d> points;  ///< metres, the ends exact; empty unless there is a way
   std::int64_t expanded = 0;            ///< cells that searches looked at
   std::optional<Eigen::Vector2d> cut;   ///< metres: where what cut the way off lies on it
   bool is_kept = false;                 ///< nothing but what the robot has passed is another than before
@@ -75,7 +75,7 @@ class Leg {
 
   End from_, to_;
   std::optional<std::pair<Cell, Cell>> anchors_;  ///< of the map; none if the way is one straight line
-  std::optional<KeptPath> kept_;                   ///< none without anchors
+  std::optional<KeptPath> kept_;                  ///< none without anchors
   std::weak_ptr<RobotGrid> grid_;
   Cell origin_;  ///< of that grid
 };

@@ -63,7 +63,8 @@ PlanResult plan(const Terrain& terrain, const Eigen::Vector2d& start, const Eige
   if (auto wrong = check_request(start, goal, radius, terrain.resolution())) {
     return refusal(wrong->reason, std::move(wrong->message));
   }
-  if (terrain.grid().cells().empty()) return refusal(Reason::kNoMap, "nothing has been observed in the height band yet");
+  if (terrain.grid().cells().empty())
+    return refusal(Reason::kNoMap, "nothing has been observed in the height band yet");
   RobotGrids grids(terrain, 0);
   const RobotTask task{grids, radius};
   return finish(task, *Route(start, {}, goal).find(task, std::numeric_limits<std::int64_t>::max()));

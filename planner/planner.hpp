@@ -88,6 +88,10 @@ class Planner {
     bool must_begin_anew = false;          ///< the robot has left its path
   };
 
+  /// Between two calls of `serve` about so many cells may be looked at: some 100 ms.
+  static constexpr std::int64_t kEffort = 1'000'000;
+  static constexpr Changed kAnything{{{-kMaxVoxel, -kMaxVoxel}, {kMaxVoxel, kMaxVoxel}}, true};
+
   [[nodiscard]] RobotTask task(const Active& active) { return {grids_, active.radius}; }
   [[nodiscard]] std::optional<Objection> objection(const Active& active) const;
   [[nodiscard]] bool find(Active& active, const Moment& moment);

@@ -22,7 +22,9 @@ CellRectangle grown(const CellRectangle& area, int by) {
   return {{area.low.x - by, area.low.y - by}, {area.high.x + by, area.high.y + by}};
 }
 
-bool holds(const CellRectangle& area, const CellRectangle& other) { return area.holds(other.low) && area.holds(other.high); }
+bool holds(const CellRectangle& area, const CellRectangle& other) {
+  return area.holds(other.low) && area.holds(other.high);
+}
 
 }  // namespace
 

@@ -54,8 +54,8 @@ class RobotGrids {
   /// begin anew each time.
   RobotGrids(const Terrain& terrain, int slack);
 
-  /// Null: `area` is larger than kMaxCells. Of two calls the first's is as it was, but out of date after `follow` unless
-  /// it is asked for again.
+  /// Null: `area` is larger than kMaxCells. Of two calls the first's is as it was, but out of date after `follow`
+  /// unless it is asked for again.
   [[nodiscard]] std::shared_ptr<RobotGrid> at(double radius, Ignoring ignoring, const CellRectangle& area);
   [[nodiscard]] Areas& areas() { return areas_; }
   [[nodiscard]] const Terrain& terrain() const { return terrain_; }

@@ -13,8 +13,9 @@ class Route {
   Route(const Eigen::Vector2d& start, std::span<const Eigen::Vector2d> waypoints, const Eigen::Vector2d& goal);
 
   struct Found {
-    Finding way;                     ///< of all legs; or of the one that fails
-    std::vector<std::int32_t> legs;  ///< of each point, the leg that ends there or beyond; of a failure, the one that fails
+    Finding way;  ///< of all legs; or of the one that fails
+    std::vector<std::int32_t>
+        legs;  ///< of each point, the leg that ends there or beyond; of a failure, the one that fails
   };
 
   /// From scratch, as far as looking at about `effort` cells gets; call it again for the rest. That there is no way is

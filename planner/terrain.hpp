@@ -17,8 +17,8 @@ struct Ground {
 /// What is taken as if it were free, to tell what closes a way.
 enum class Ignoring {
   kNothing,
-  kNoGo,     ///< there are no no-go zones
-  kPins,     ///< what only edits made occupied
+  kNoGo,        ///< there are no no-go zones
+  kPins,        ///< what only edits made occupied
   kUnobserved,  ///< what nobody has seen, within the rectangle around all that is known
 };
 

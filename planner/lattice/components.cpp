@@ -104,8 +104,8 @@ void Components::link(int tx, int ty) {
     const Tile& other = tile_at(tx + 1, ty);
     const int x = (tx + 1) * kTile;  // of the column right of the border, and with its own border the line left of it
     const int height = std::min(kTile, grid_.height() - ty * kTile);
-    const std::uint64_t both = grid_.columns().word_from(x, ty * kTile + 1) & grid_.columns().word_from(x + 1, ty * kTile + 1) &
-                               ~std::uint64_t{0} >> (64 - height);
+    const std::uint64_t both = grid_.columns().word_from(x, ty * kTile + 1) &
+                               grid_.columns().word_from(x + 1, ty * kTile + 1) & ~std::uint64_t{0} >> (64 - height);
     for (std::uint64_t met = starts_of(both); met != 0; met &= met - 1) {
       const int y = std::countr_zero(met);
       add(tile.right, {tile.part_at(kTile - 1, y), other.part_at(0, y)});

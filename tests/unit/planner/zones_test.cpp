@@ -100,7 +100,8 @@ TEST(PlanWithZones, ContactLetsTheBodyOverNotTheCentre) {
               c == '#' ? Reason::kGoalOccupied : Reason::kGoalUnknown);
   }
   // No-go outranks it.
-  const ZoneLayer outranked = layer_of({contact("posts", {7.1, 2.1}, {7.9, 4.9}), no_go("post", {7.1, 2.1}, {7.9, 2.9})});
+  const ZoneLayer outranked =
+      layer_of({contact("posts", {7.1, 2.1}, {7.9, 4.9}), no_go("post", {7.1, 2.1}, {7.9, 2.9})});
   EXPECT_EQ(plan({grid, outranked}, left, right, 0.8).reason, Reason::kNoValidPath);
   const ZoneLayer both = layer_of({contact("all", {0, 0}, {15, 7}), no_go("door", {7.1, 3.1}, {7.9, 3.9})});
   EXPECT_EQ(plan({grid, both}, left, right, 0.0).reason, Reason::kNoValidPath);
