@@ -61,6 +61,15 @@ Finding what_closes(const RobotTask& task, const Eigen::Vector2d& from, const Ei
     if (closed != way.end()) finding.cut = centre_of(*closed) * task.terrain().resolution();
     finding.message = "no way through: " + message + (finding.cut ? ", at " + at_place(*finding.cut) : "");
   };
+  if (!task.terrain().robots().empty()) {
+    const std::vector<Cell> way = way_without(task, Ignoring::kRobots, from, to);
+    const auto closed = std::find_if(way.begin(), way.end(), [&](Cell cell) { return !space.is_open(cell); });
+    if (closed != way.end()) {
+      const std::string robot = task.terrain().robots().robot_near(centre_of(*closed), task.in_cells() + 1);
+      blame(Reason::kNoValidPath, way, (robot.empty() ? "another robot" : robot) + " stands in the way");
+      return finding;
+    }
+  }
   if (task.terrain().zones().has_no_go()) {
     const std::vector<Cell> way = way_without(task, Ignoring::kNoGo, from, to);
     const std::string names = zones_on(task, space, way);

@@ -76,7 +76,11 @@ std::optional<Objection> check_cell(const Terrain& terrain, const End& end) {
     const char* too = is_free(state) ? "" : is_known(state) ? ", and is occupied" : ", and has not been observed free";
     return Objection{end.no_go, describe(end) + " lies in " + no_go(*zone) + too};
   }
-  if (is_free(state)) return std::nullopt;
+  if (is_free(state)) {
+    const std::uint64_t bit = std::uint64_t{1} << ((cell.x & 7) | (cell.y & 7) << 3);
+    if ((terrain.robots().at({cell.x >> 3, cell.y >> 3, 0}) & bit) == 0) return std::nullopt;
+    return Objection{end.clearance, describe(end) + " is where " + terrain.robots().robot_near(p_cells, 0) + " stands"};
+  }
   if (is_known(state)) return Objection{end.occupied, describe(end) + " is occupied"};
   if (is_inside(terrain.grid(), cell)) return Objection{end.unknown, describe(end) + " has not been observed free"};
   return Objection{end.outside, describe(end) + " lies outside the map"};
@@ -89,6 +93,11 @@ Objection too_near(const Terrain& terrain, const End& end, double radius) {
   const double r = terrain.resolution();
   const Eigen::Vector2d p = end.position / r;
   const auto zone = terrain.zones().nearest_no_go(p, gap / r + kTouch);
+  const std::string robot = terrain.robots().robot_near(p, radius / r);
+  FreeSpace without_robots(terrain.without(Ignoring::kRobots), radius / r);
+  if (!robot.empty() && without_robots.sees(p, p)) {
+    return {end.clearance, describe(end) + " is too near to where " + robot + " stands"};
+  }
   FreeSpace without(terrain.without(Ignoring::kNoGo), radius / r);
   const bool is_zone_alone = zone && without.sees(p, p);
   return {end.clearance, describe(end) + " is " + metres(gap) + " from " +

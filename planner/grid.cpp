@@ -124,6 +124,7 @@ Result<Band> make_band(double zmin, double zmax, double resolution) {
 Grid::Grid(double resolution, Band band, double free_share)
     : resolution_(resolution),
       band_(band),
+      free_share_(free_share),
       needed_(std::max(1, static_cast<std::int32_t>(std::ceil(free_share * band.height() - 1e-9)))) {
   assert(resolution > 0 && band.height() > 0);
   assert(free_share > 0 && free_share <= 1);

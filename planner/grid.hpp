@@ -56,6 +56,7 @@ class Grid {
   [[nodiscard]] bool has_pinned() const { return !pinned_.empty(); }
   [[nodiscard]] double resolution() const { return resolution_; }
   [[nodiscard]] const Band& band() const { return band_; }
+  [[nodiscard]] double free_share() const { return free_share_; }
 
  private:
   struct Planes {
@@ -69,6 +70,7 @@ class Grid {
 
   double resolution_;
   Band band_;
+  double free_share_;
   std::int32_t needed_;                                             ///< free voxels that make a cell free
   std::int32_t lowest_ = std::numeric_limits<std::int32_t>::max();  ///< bricks ever touched in the band, z
   std::int32_t highest_ = std::numeric_limits<std::int32_t>::min();

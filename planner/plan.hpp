@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "planner/route.hpp"
+#include "planner/way_out.hpp"
 
 namespace concord {
 
@@ -22,6 +23,7 @@ struct PlanResult {
   double least_clearance = 0.0;         ///< least distance to a cell that is not free, or no-go, metres
   std::int64_t expanded = 0;            ///< cells the search looked at
   std::optional<Eigen::Vector2d> cut;   ///< metres: where what cuts the way off begins
+  std::vector<std::string> zones;       ///< no-go zones near the path, by name
 };
 
 /// What no map is needed for to refuse. `resolution`: metres.
@@ -31,8 +33,12 @@ struct PlanResult {
 /// Least distance of a polyline (metres) to what a robot may not enter.
 [[nodiscard]] double least_clearance(const RobotTask& task, std::span<const Eigen::Vector2d> points);
 
-/// What was found, in metres, measured, and with the validator's last word on it. The ends stay exact.
-[[nodiscard]] PlanResult finish(const RobotTask& task, Route::Found found);
+/// The distance of a point to the same, as far as a metre or what a search keeps away from.
+[[nodiscard]] double clearance_at(const RobotTask& task, const Eigen::Vector2d& p);
+
+/// What was found, measured, and with the validator's last word on it. A robot that stands in a no-go zone takes `exit`
+/// first: on it the zones it stands in are not heeded.
+[[nodiscard]] PlanResult finish(const RobotTask& task, Route::Found found, const std::optional<WayOut>& exit = {});
 
 /// A path for a round robot of `radius` metres over free cells, at any angle: one that keeps away from what is blocked,
 /// straight where that is as good, and checked by code that did not plan it. Unknown cells are walls, so are no-go

@@ -8,30 +8,8 @@
 namespace concord {
 namespace {
 
-/// Further than that many places of change are taken as one.
+/// More places of change than that are taken as one.
 constexpr std::size_t kMostChanges = 16;
-
-Window around(const Window& a, const Window& b) {
-  return {{std::min(a.low.x, b.low.x), std::min(a.low.y, b.low.y)},
-          {std::max(a.high.x, b.high.x), std::max(a.high.y, b.high.y)}};
-}
-
-Changed joined(const Changed& a, const Changed& b) { return {around(a.cells, b.cells), a.opened || b.opened}; }
-
-/// Where the cells of the columns have changed, by tile.
-std::vector<Changed> places(const std::vector<ColumnChange>& columns) {
-  std::map<Cell, Changed> tiles;
-  for (const ColumnChange& column : columns) {
-    if ((column.blocked | column.freed) == 0) continue;
-    const Cell low{column.column.x * 8, column.column.y * 8};
-    const Changed here{{low, {low.x + 7, low.y + 7}}, column.freed != 0};
-    const auto [it, is_new] = tiles.try_emplace(FreeSpace::tile_of(low), here);
-    if (!is_new) it->second = joined(it->second, here);
-  }
-  std::vector<Changed> changes;
-  for (const auto& [tile, change] : tiles) changes.push_back(change);
-  return changes;
-}
 
 /// The distance of `p` to the polyline.
 double distance(const Eigen::Vector2d& p, const std::vector<Eigen::Vector2d>& points) {
@@ -47,8 +25,7 @@ double distance(const Eigen::Vector2d& p, const std::vector<Eigen::Vector2d>& po
 
 }  // namespace
 
-Planner::Planner(Grid grid)
-    : grid_(std::move(grid)), zones_(grid_.resolution(), grid_.band()), grids_(Terrain(grid_, zones_), 2) {}
+Planner::Planner(Grid grid) { levels_.push_back(std::make_unique<Level>(std::move(grid))); }
 
 void Planner::set_brick(BrickIndex index, Brick brick) {
   if (map_.set(index, std::move(brick))) touched_.push_back(index);
@@ -60,29 +37,50 @@ void Planner::clear_map() {
 }
 
 std::vector<BrickIndex> Planner::project() {
-  const ZoneLayer::Change change{grid_.update(map_, touched_), false};
+  if (touched_.empty()) return {};
+  std::vector<BrickIndex> first;
+  for (const auto& level : levels_) {
+    std::vector<BrickIndex> columns;
+    const Level::Update update = level->project(map_, touched_, columns);
+    if (!columns.empty()) heed(level.get(), update);
+    if (level == levels_.front()) first = std::move(columns);
+  }
   touched_.clear();
-  if (change.columns.empty()) return {};
-  changed(change);
-  std::vector<BrickIndex> columns;
-  columns.reserve(change.columns.size());
-  for (const ColumnChange& column : change.columns) columns.push_back(column.column);
-  return columns;
+  return first;
 }
 
 void Planner::set_zones(std::span<const Zone> zones) {
   has_zones_ = true;
-  changed(zones_.set(zones));
+  said_zones_.assign(zones.begin(), zones.end());
+  for (const auto& level : levels_) heed(level.get(), level->set_zones(zones));
 }
 
-void Planner::changed(const ZoneLayer::Change& change) {
+/// Null: there are too many, or no voxel's centre lies in its band.
+Level* Planner::level_for(const Robot& robot) {
+  const Grid& first = grid();
+  if (!robot.band) return levels_.front().get();
+  const Result<Band> band = make_band(robot.band->first, robot.band->second, first.resolution());
+  if (!band) return nullptr;
+  for (const auto& level : levels_) {
+    if (level->grid().band().first == band->first && level->grid().band().last == band->last) return level.get();
+  }
+  if (levels_.size() >= kMaxLevels) return nullptr;
+  Grid own(first.resolution(), *band, first.free_share());
+  own.update(map_, map_.sorted_bricks());
+  levels_.push_back(std::make_unique<Level>(std::move(own)));
+  Level* level = levels_.back().get();
+  (void)level->set_zones(said_zones_);
+  for (const auto& [name, pose] : poses_) {
+    if (pose.radius > 0) (void)level->set_robot(name, pose.p, pose.radius);
+  }
+  return level;
+}
+
+void Planner::heed(const Level* level, const Level::Update& update) {
   ++version_;
-  std::vector<BrickIndex> columns;
-  for (const ColumnChange& column : change.columns) columns.push_back(column.column);
-  if (change.anywhere) grids_.clear();
-  grids_.follow(columns);
-  const std::vector<Changed> changes = change.anywhere ? std::vector{kAnything} : places(change.columns);
-  for (auto& [robot, active] : active_) follow(active, changes);
+  for (auto& [robot, active] : active_) {
+    if (active.level == level && robot != update.except) follow(active, update.places);
+  }
 }
 
 /// A failure may have another reason now, be it that nothing has changed that a robot could touch.
@@ -98,13 +96,18 @@ void Planner::follow(Active& active, const std::vector<Changed>& changes) {
   wait(active);
 }
 
-bool Planner::set_pose(const std::string& robot, const Eigen::Vector2d& p_map) {
+bool Planner::set_pose(const std::string& robot, const Eigen::Vector2d& p_map, double radius) {
   if (poses_.size() >= kMaxPoses && !poses_.contains(robot)) return false;
-  poses_[robot] = p_map;
+  poses_[robot] = {p_map, radius};
+  for (const auto& level : levels_) {
+    const Level::Update update = radius > 0 ? level->set_robot(robot, p_map, radius) : level->remove_robot(robot);
+    if (!update.places.empty()) heed(level.get(), update);
+  }
   const auto it = active_.find(robot);
   if (it == active_.end()) return true;
   Active& active = it->second;
-  if (active.route) active.route->pass(p_map, std::max(active.radius, grid_.resolution()));
+  const double r = grid().resolution();
+  if (active.route) active.route->pass(p_map, std::max(active.robot.radius, r));
   if (has_moved(active, p_map)) wait(active);
   if (is_far_off(active, p_map)) {
     active.must_begin_anew = true;
@@ -114,7 +117,17 @@ bool Planner::set_pose(const std::string& robot, const Eigen::Vector2d& p_map) {
 }
 
 void Planner::keep_poses(const std::set<std::string>& aligned) {
-  std::erase_if(poses_, [&](const auto& pose) { return !aligned.contains(pose.first); });
+  for (auto it = poses_.begin(); it != poses_.end();) {
+    if (aligned.contains(it->first)) {
+      ++it;
+      continue;
+    }
+    for (const auto& level : levels_) {
+      const Level::Update update = level->remove_robot(it->first);
+      if (!update.places.empty()) heed(level.get(), update);
+    }
+    it = poses_.erase(it);
+  }
 }
 
 /// Whether what a robot keeps away from on its path may be another than before.
@@ -125,8 +138,8 @@ bool Planner::comes_near(const Active& active, const std::vector<Changed>& chang
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
-  const double r = grid_.resolution();
-  const double margin = std::max(active.radius, active.path.least_clearance) + r;
+  const double r = grid().resolution();
+  const double margin = std::max(active.robot.radius, active.path.least_clearance) + r;
   return std::any_of(changes.begin(), changes.end(), [&](const Changed& change) {
     return change.cells.low.x * r <= high.x() + margin && (change.cells.high.x + 1) * r >= low.x() - margin &&
            change.cells.low.y * r <= high.y() + margin && (change.cells.high.y + 1) * r >= low.y() - margin;
@@ -136,13 +149,13 @@ bool Planner::comes_near(const Active& active, const std::vector<Changed>& chang
 /// So far that a request which failed from where its robot was may succeed now. A robot that has a path follows it.
 bool Planner::has_moved(const Active& active, const Eigen::Vector2d& p_map) const {
   if (active.request.start || !active.points.empty()) return false;
-  return !active.start || (p_map - *active.start).norm() >= grid_.resolution();
+  return !active.start || (p_map - *active.start).norm() >= grid().resolution();
 }
 
 /// A robot that is not on its path needs another.
 bool Planner::is_far_off(const Active& active, const Eigen::Vector2d& p_map) const {
   if (active.request.start || active.points.empty()) return false;
-  return distance(p_map, active.points) > std::max(1.0, 2 * active.radius) + 4 * grid_.resolution();
+  return distance(p_map, active.points) > std::max(1.0, 2 * active.robot.radius) + 4 * grid().resolution();
 }
 
 }  // namespace concord

@@ -1,6 +1,7 @@
 // How the planner answers requests, in turns.
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "planner/planner.hpp"
 
@@ -17,11 +18,6 @@ bool is_failed_search(const Path& path) {
   constexpr std::array kFailures{Reason::kNoValidPath, Reason::kWaypointUnreachable, Reason::kBlockedByEdit,
                                  Reason::kBlockedByUnknown, Reason::kSearchLimit};
   return std::any_of(kFailures.begin(), kFailures.end(), [&](Reason reason) { return path.status == name(reason); });
-}
-
-/// Of a path that there is, the words follow from its points.
-bool same_answer(const Path& a, const Path& b) {
-  return a.status == b.status && a.points == b.points && (!a.points.empty() || a.message == b.message);
 }
 
 }  // namespace
@@ -55,17 +51,61 @@ std::optional<Path> Planner::end(const std::string& robot) {
   return last;
 }
 
-Planner::Reply Planner::request(const PathRequest& request, double radius, const Moment& moment) {
+std::vector<Planner::Cancelled> Planner::cancel(const std::string& robot, const Moment& moment) {
+  std::vector<Cancelled> ended;
+  const auto finish_off = [&](Active& active, bool was_answered) {
+    const Path before = active.path;
+    PlanResult result;
+    result.reason = Reason::kCancelled;
+    result.message = "cancelled as it was asked for";
+    take(active, std::move(result), moment);
+    active.path.plan_number = before.plan_number;
+    active.path.superseded = before.path_id;
+    remember(active.path);
+    ended.push_back({active.path, was_answered});
+  };
+  if (const auto it = active_.find(robot); it != active_.end()) {
+    finish_off(it->second, true);
+    active_.erase(it);
+  }
+  for (Active& active : waiting_) {
+    if (active.request.robot == robot) finish_off(active, false);
+  }
+  std::erase_if(waiting_, [&](const Active& active) { return active.request.robot == robot; });
+  return ended;
+}
+
+std::optional<Planner::Cut> Planner::cut_of(const std::string& robot, std::int64_t path_id) {
+  const auto it = active_.find(robot);
+  if (it == active_.end() || it->second.path.path_id != path_id || !it->second.cut) return std::nullopt;
+  return Cut{*std::exchange(it->second.cut, std::nullopt), it->second.level->grid().band()};
+}
+
+std::optional<Path> Planner::name_edit(const std::string& robot, std::int64_t path_id, const std::string& edit,
+                                       const std::string& author) {
+  const auto it = active_.find(robot);
+  if (it == active_.end() || it->second.path.path_id != path_id) return std::nullopt;
+  it->second.path.edit_id = edit;
+  it->second.path.message += "; it is edit " + edit + (author.empty() ? "" : " by " + author);
+  return it->second.path;
+}
+
+Planner::Reply Planner::request(const PathRequest& request, const Robot& robot, const Moment& moment) {
   if (auto reply = known(request)) return *reply;
   Active now;
   now.request = request;
-  now.radius = request.radius > 0 ? request.radius : radius;
+  now.robot = robot;
+  if (request.radius > 0) now.robot.radius = request.radius;
+  now.level = level_for(robot);
   if (effort_ < kEffort && waiting_.empty() && find(now, moment)) return settle(std::move(now), moment);
   if (waiting_.size() < kMaxWaiting) {
     waiting_.push_back(std::move(now));
     return {};
   }
-  take(now, {Reason::kBusy, "so many requests wait already: ask again later", {}, {}, 0, 0, 0, {}}, moment);
+  PlanResult busy;
+  busy.reason = Reason::kBusy;
+  busy.message = "so many requests wait already: ask again later";
+  take(now, std::move(busy), moment);
   return {now.path, {}};
 }
 
@@ -82,6 +122,8 @@ Planner::Reply Planner::settle(Active active, const Moment& moment) {
   }
   active.path.active = true;
   active.said = moment.utime;
+  const auto before = active_.find(request.robot);
+  if (before != active_.end()) active.path.superseded = before->second.path.path_id;
   Reply reply{active.path, end(request.robot)};
   const std::string robot = request.robot;
   active_.emplace(robot, std::move(active));
@@ -119,6 +161,7 @@ std::vector<Path> Planner::replan(const Moment& moment) {
   for (Active* active : due(moment)) {
     if (effort_ >= kEffort) break;
     const Path before = active->path;
+    const std::string found_before = active->found;
     if (!keep_up(*active, moment)) {
       if (!active->points.empty()) active->route.reset();
       active->points.clear();
@@ -126,14 +169,31 @@ std::vector<Path> Planner::replan(const Moment& moment) {
       if (!find(*active, moment)) continue;
     }
     active->turn = 0;
-    const bool is_another = !same_answer(active->path, before);
+    const bool is_another = active->path.status != before.status || active->path.points != before.points ||
+                            (active->points.empty() && active->found != found_before);
+    if (!is_another && active->points.empty()) {
+      active->path.message = before.message;
+      active->path.edit_id = before.edit_id;
+      active->cut.reset();
+    }
     active->path.active = true;
     active->path.plan_number = before.plan_number + (is_another ? 1 : 0);
-    if (!is_another) continue;
+    if (active->path.path_id != before.path_id) active->path.superseded = before.path_id;
+    if (!is_another) {
+      active->path.path_id = before.path_id;
+      active->path.superseded = before.superseded;
+      continue;
+    }
     active->said = moment.utime;
     changed.push_back(active->path);
   }
   return changed;
+}
+
+std::vector<Path> Planner::kept() const {
+  std::vector<Path> paths;
+  for (const auto& [robot, active] : active_) paths.push_back(active.path);
+  return paths;
 }
 
 std::vector<Path> Planner::repeat(const Moment& moment) {

@@ -24,6 +24,8 @@ const char* name(Reason reason) {
     case Reason::kBlockedByEdit: return "BLOCKED_BY_EDIT";
     case Reason::kBlockedByUnknown: return "BLOCKED_BY_UNKNOWN";
     case Reason::kBusy: return "BUSY";
+    case Reason::kMapStale: return "MAP_STALE";
+    case Reason::kCancelled: return "CANCELLED";
     case Reason::kSearchLimit: return "SEARCH_LIMIT";
     case Reason::kValidationFailed: return "VALIDATION_FAILED";
   }

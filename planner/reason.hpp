@@ -24,6 +24,8 @@ enum class Reason {
   kBlockedByEdit,
   kBlockedByUnknown,
   kBusy,
+  kMapStale,
+  kCancelled,
   kSearchLimit,
   kValidationFailed,
 };

@@ -7,6 +7,7 @@ std::uint64_t Terrain::free_at(BrickIndex column) const {
   const std::uint64_t free = free_plane(cells);
   switch (ignoring_) {
     case Ignoring::kNothing:
+    case Ignoring::kRobots:
     case Ignoring::kNoGo: return free;
     case Ignoring::kPins: return free | grid_->pinned(column);
     case Ignoring::kUnobserved: {
@@ -19,8 +20,10 @@ std::uint64_t Terrain::free_at(BrickIndex column) const {
 
 Ground Terrain::at(BrickIndex column) const {
   const std::uint64_t free = free_at(column);
-  if (!zones_->has_no_go() && !zones_->has_contact()) return {free, free, free};
-  const std::uint64_t forbidden = ignoring_ == Ignoring::kNoGo ? 0 : zones_->no_go(column);
+  const bool has_zones = zones_->has_no_go() || zones_->has_contact();
+  if (!has_zones && robots_->empty()) return {free, free, free};
+  std::uint64_t forbidden = ignoring_ == Ignoring::kNoGo ? 0 : zones_->no_go(column);
+  if (ignoring_ != Ignoring::kRobots) forbidden |= robots_->at(column);
   const std::uint64_t passable = free & ~forbidden;
   return {free, passable, passable | (zones_->contact(column) & ~forbidden)};
 }

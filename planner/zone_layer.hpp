@@ -44,6 +44,8 @@ class ZoneLayer {
   [[nodiscard]] std::uint64_t contact(BrickIndex column) const;
   /// The first no-go zone, by name, that holds the cell; null where none does.
   [[nodiscard]] const std::string* no_go_at(Cell cell) const;
+  /// The no-go zones that lie in a column of bricks, by name.
+  [[nodiscard]] std::vector<std::string> no_go_names(BrickIndex column) const;
   struct Near {
     std::string name;
     double distance;  ///< of its nearest cell, in cells

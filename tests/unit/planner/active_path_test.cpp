@@ -60,7 +60,7 @@ class ActivePath : public testing::Test {
   [[nodiscard]] Planner::Moment now() const { return {revision_, utime_}; }
   Path ask(const PathRequest& request) {
     planner_.serve(now());
-    return planner_.request(request, 0.4, now()).path.value();
+    return planner_.request(request, {0.4}, now()).path.value();
   }
   std::vector<Path> replan() {
     planner_.serve(now());
@@ -194,7 +194,7 @@ TEST_F(ActivePath, OnlyARequestThatIsKeptTakesItsPlace) {
   ask(kAcross);
   PathRequest question = from_to("q1", "robot1", Eigen::Vector2d(2.5, 2.5), {2.5, 7.5});
   question.keep_active = false;
-  const Planner::Reply aside = planner_.request(question, 0.4, now());
+  const Planner::Reply aside = planner_.request(question, {0.4}, now());
   EXPECT_FALSE(aside.path->active);
   EXPECT_FALSE(aside.ended);
   PathRequest bad = from_to("q2", "robot1", Eigen::Vector2d(2.5, 2.5), {2.5, 7.5});
@@ -206,7 +206,7 @@ TEST_F(ActivePath, OnlyARequestThatIsKeptTakesItsPlace) {
   EXPECT_EQ(paths[0].id, "p1");
 
   const Planner::Reply next =
-      planner_.request(from_to("p2", "robot1", Eigen::Vector2d(2.5, 2.5), {2.5, 7.5}), 0.4, now());
+      planner_.request(from_to("p2", "robot1", Eigen::Vector2d(2.5, 2.5), {2.5, 7.5}), {0.4}, now());
   EXPECT_TRUE(next.path->active);
   ASSERT_TRUE(next.ended);
   EXPECT_EQ(next.ended->id, "p1");

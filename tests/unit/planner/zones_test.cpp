@@ -48,8 +48,8 @@ TEST(PlanWithZones, SaysWhichZoneIsInTheWay) {
   EXPECT_EQ(result.reason, Reason::kGoalInNoGo);
   EXPECT_NE(result.message.find("'press'"), std::string::npos) << result.message;
   result = plan({grid, zones}, {13, 8}, {4, 8}, 0.5);
-  EXPECT_EQ(result.reason, Reason::kStartInNoGo);
-  EXPECT_NE(result.message.find("'press'"), std::string::npos) << result.message;
+  EXPECT_EQ(result.reason, Reason::kOk) << "a robot that stands in a zone may leave it";
+  EXPECT_TRUE(result.message.starts_with("it leaves the no-go zone 'press' first")) << result.message;
   result = plan({grid, zones}, {4, 8}, {11.8, 8}, 0.5);
   EXPECT_EQ(result.reason, Reason::kGoalClearance);
   EXPECT_NE(result.message.find("'press'"), std::string::npos) << result.message;
@@ -198,6 +198,8 @@ TEST(PlanWithZones, LinesOfSightAreTheValidators) {
   EXPECT_GT(by_contact, 10);
 }
 
+bool leaves_a_zone(const std::string& message) { return message.starts_with("it leaves the no-go zone"); }
+
 /// Every twentieth of a cell along the path.
 void expect_respected(const Oracle& oracle, const std::vector<Eigen::Vector2d>& points, double radius) {
   for (std::size_t i = 1; i < points.size(); ++i) {
@@ -229,6 +231,7 @@ TEST(PlanWithZones, EveryPathKeepsTheRule) {
       const PlanResult result = plan({grid, layer}, start, goal, radius);
       const PlanResult back = plan({grid, layer}, goal, start, radius);
       ASSERT_NE(result.reason, Reason::kValidationFailed) << "seed " << seed;
+      if (leaves_a_zone(result.message) || leaves_a_zone(back.message)) continue;
       ASSERT_EQ(result.reason == Reason::kOk, back.reason == Reason::kOk) << "seed " << seed;
       ++failed[result.reason];
       if (result.message.find("without them there is a way") != std::string::npos) {
@@ -262,7 +265,7 @@ class ZonesAndActivePaths : public testing::Test {
     request.start = Eigen::Vector2d(4, 8);
     request.goal = {25, 8};
     request.keep_active = true;
-    return planner_.request(request, radius, {1, utime_}).path.value();
+    return planner_.request(request, {radius}, {1, utime_}).path.value();
   }
   std::vector<Path> set(const std::vector<Zone>& zones) {
     planner_.set_zones(zones);
@@ -383,7 +386,7 @@ TEST_F(ZonesAndActivePaths, TheAnswerIsNeverWrongWhileZonesComeAndGo) {
       const Grid& grid = planner_.grid();
       const PlanResult fresh = plan({grid, layer_of(zones)}, {4, 8}, {25, 8}, 0.4);
       ASSERT_EQ(path.status == "OK", fresh.reason == Reason::kOk) << "seed " << seed << " change " << change;
-      if (path.status != "OK") continue;
+      if (path.status != "OK" || leaves_a_zone(path.message)) continue;
       std::vector<Eigen::Vector2d> points;
       for (const Eigen::Vector3d& p : path.points) points.push_back(p.head<2>());
       expect_respected(Oracle(grid, zones), points, 0.4);
