@@ -162,6 +162,7 @@ std::vector<Path> Planner::replan(const Moment& moment) {
     if (effort_ >= kEffort) break;
     const Path before = active->path;
     const std::string found_before = active->found;
+    const bool left_a_zone = active->exit.has_value();
     if (!keep_up(*active, moment)) {
       if (!active->points.empty()) active->route.reset();
       active->points.clear();
@@ -170,6 +171,7 @@ std::vector<Path> Planner::replan(const Moment& moment) {
     }
     active->turn = 0;
     const bool is_another = active->path.status != before.status || active->path.points != before.points ||
+                            left_a_zone != active->exit.has_value() ||
                             (active->points.empty() && active->found != found_before);
     if (!is_another && active->points.empty()) {
       active->path.message = before.message;

@@ -54,8 +54,8 @@ struct MapRequest {
 
 inline constexpr std::size_t kMaxWaypoints = 1000;
 
-/// Asks for a path on the grid. With `keep_active` it is replanned whenever a change of the map touches it. `kCancel` ends
-/// what is kept or waits for the robot; nothing else is heeded then.
+/// Asks for a path on the grid. With `keep_active` it is replanned whenever a change of the map touches it. `kCancel`
+/// ends what is kept or waits for the robot; nothing else is heeded then.
 struct PathRequest {
   enum class Op { kPlan, kCancel };
   std::string id;
@@ -121,8 +121,8 @@ struct Path {
   std::string edit_id;             ///< that cut the way off, where it is known
   std::string frame_agent;         ///< in whose frame the points are; empty: the map's
   std::string frame_id;
-  double radius = 0.0;             ///< of the disc that was planned for, metres
-  double zmin = 0.0, zmax = 0.0;   ///< heights of its band
+  double radius = 0.0;            ///< of the disc that was planned for, metres
+  double zmin = 0.0, zmax = 0.0;  ///< heights of its band
   std::int32_t failed_leg = -1;
   std::optional<Eigen::Vector2d> nearest;  ///< what can be reached nearest to a goal that cannot
   std::vector<std::string> zones;          ///< no-go zones near it

@@ -47,8 +47,26 @@ Zone zone(const std::string& name, Volume volume) {
   return {name, Zone::Kind::kAllowContact, std::move(volume), some_transform(), "Zoë", kTime, 5};
 }
 
+Path no_path() {
+  Path path;
+  path.id = "r-6";
+  path.robot = "robot1";
+  path.status = "NO_VALID_PATH";
+  path.message = "none";
+  path.map_revision = 77;
+  path.plan_number = 2;
+  path.active = true;
+  path.utime = kTime;
+  return path;
+}
+
 Path some_path() {
-  Path path{"r-6", "robot1", "OK", "a path", {{1, 2, 0}, {3, 4, 0}}, 2.8, 0.5, 77, 2, true, kTime};
+  Path path = no_path();
+  path.status = "OK";
+  path.message = "a path";
+  path.points = {{1, 2, 0}, {3, 4, 0}};
+  path.length = 2.8;
+  path.least_clearance = 0.5;
   path.details = {{0.8, 0.5, 0, 0.0}, {0.8, 0.6, 1, 5.6}};
   path.path_id = 1LL << 40;
   path.superseded = 17;
@@ -150,7 +168,7 @@ const std::vector<MessageSample>& message_samples() {
              PathRequest{"r-7", "robot1", std::nullopt, {0, 0}, 0, false, {}, PathRequest::Op::kCancel}),
       sample("path_watch_t", PathWatch{"r-8", "", "headset1"}),
       sample("path_t", some_path()),
-      sample("path_t", Path{"r-6", "robot1", "NO_VALID_PATH", "none", {}, 0, 0, 77, 2, true, kTime}),
+      sample("path_t", no_path()),
       sample("align_request_t", AlignRequest{"a-1", "Zoë", "robot1", "odom", "robot2", "", some_transform(), kTime}),
       sample("align_request_t", AlignRequest{"a-2", "", "robot1", "", "", "", std::nullopt, kTime}),
       sample("align_decision_t", AlignDecision{"d-1", "Zoë", AlignDecision::Op::kAccept, "a-1", kTime}),
