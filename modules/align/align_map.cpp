@@ -105,4 +105,17 @@ Result<AlignMap> make_align_map(std::span<const Eigen::Vector3f> cloud, double r
   return out;
 }
 
+AlignMap mirrored(const AlignMap& map, int threads) {
+  const Eigen::Vector3d mirror(-1.0, 1.0, 1.0);
+  AlignMap out;
+  out.resolution = map.resolution;
+  out.points = map.points;
+  for (Eigen::Vector3f& p : out.points) p.x() = -p.x();
+  out.levels = make_levels(out.points, map.resolution, threads);
+  out.free = map.free.mirrored();
+  out.R_upright_map = mirror.asDiagonal() * map.R_upright_map * mirror.asDiagonal();
+  orient(out);
+  return out;
+}
+
 }  // namespace concord

@@ -34,9 +34,12 @@ struct AlignMap {
 /// kMinAlignResolution (kBadResolution).
 [[nodiscard]] Result<AlignMap> make_align_map(std::span<const Eigen::Vector3f> cloud, double resolution, int threads);
 
+/// The map as a mirror in the plane x = 0 shows it.
+[[nodiscard]] AlignMap mirrored(const AlignMap& map, int threads);
+
 /// The direction that is up by the surface itself, to correct a gravity that is off by a few degrees: floors and
 /// ceilings are level, walls are plumb, by total least squares under a shrinking gate. The identity where there is too
-/// little to tell by, or where it would turn by more than 6 degrees.
+/// little to tell by, or where it would turn by more than 4.5 degrees.
 [[nodiscard]] Eigen::Matrix3d upright(const SurfaceLevel& surface);
 
 }  // namespace concord
