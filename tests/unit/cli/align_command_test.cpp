@@ -136,7 +136,26 @@ TEST_F(AlignFilesTest, PointsThatAreNotFiniteAreLeftOut) {
   EXPECT_EQ(points->size(), 2U);
 }
 
+TEST_F(AlignFilesTest, DoublesAreReadAsSuch) {
+  const std::string pcd =
+      "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 1\n"
+      "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA ascii\n1.5 -2.25 3.125\n0.5 0 0\n";
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 2\nproperty double x\nproperty double y\nproperty double z\n"
+      "end_header\n1.5 -2.25 3.125\n0.5 0 0\n";
+  for (const std::string& file : {write("doubles.pcd", pcd), write("doubles.ply", ply)}) {
+    const auto points = read_cloud(file, 0.05);
+    ASSERT_TRUE(points) << points.error().message;
+    ASSERT_EQ(points->size(), 2U);
+    EXPECT_TRUE(points->front().isApprox(Eigen::Vector3f(1.5F, -2.25F, 3.125F))) << file;
+  }
+}
+
 TEST_F(AlignFilesTest, BadFilesAreRefusedInWords) {
+  expect_unusable(write("flat.pcd",
+                        "VERSION 0.7\nFIELDS x y\nSIZE 4 4\nTYPE F F\nCOUNT 1 1\nWIDTH 1\nHEIGHT 1\nPOINTS 1\n"
+                        "DATA ascii\n1 2\n"),
+                  "MALFORMED");
   expect_unusable(path("none.pcd"), "NOT_FOUND");
   expect_unusable(write("empty.pcd", pcd({})), "EMPTY");
   expect_unusable(write("headless.pcd", "VERSION 0.7\nFIELDS x y z\n"), "MALFORMED");
