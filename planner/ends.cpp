@@ -54,6 +54,12 @@ End goal_at(const Eigen::Vector2d& position) {
           Reason::kGoalClearance};
 }
 
+End waypoint_at(const Eigen::Vector2d& position, std::size_t number) {
+  End end = goal_at(position);
+  end.what = "waypoint " + std::to_string(number);
+  return end;
+}
+
 std::string metres(double value) {
   std::array<char, 32> text;
   std::snprintf(text.data(), text.size(), "%.2f m", value);

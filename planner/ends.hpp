@@ -19,6 +19,8 @@ struct End {
 };
 [[nodiscard]] End start_at(const Eigen::Vector2d& position);
 [[nodiscard]] End goal_at(const Eigen::Vector2d& position);
+/// With the reasons of a goal. The first has the number 1.
+[[nodiscard]] End waypoint_at(const Eigen::Vector2d& position, std::size_t number);
 
 /// Why nobody can be there.
 struct Objection {

@@ -39,26 +39,34 @@ Changed joined(const Changed& a, const Changed& b) {
           a.opened || b.opened};
 }
 
-Level::Level(Grid grid) : grid_(std::move(grid)), zones_(grid_.resolution(), grid_.band()), grids_(terrain(), kSlack) {}
+Level::Level(Grid grid)
+    : grid_(std::move(grid)), zones_(grid_.resolution(), grid_.band()), grids_(terrain(), kSlack), poses_(terrain()) {}
 
 Level::Update Level::project(const BrickMap& map, std::span<const BrickIndex> touched,
                              std::vector<BrickIndex>& columns) {
   const std::vector<ColumnChange> changes = grid_.update(map, touched);
   columns = columns_of(changes);
   grids_.follow(columns);
+  poses_.follow(columns);
   return {places(changes), {}};
 }
 
 Level::Update Level::set_zones(std::span<const Zone> zones) {
   const ZoneLayer::Change change = zones_.set(zones);
-  if (change.anywhere) grids_.clear();
-  grids_.follow(columns_of(change.columns));
+  if (change.anywhere) {
+    grids_.clear();
+    poses_.clear();
+  }
+  const std::vector<BrickIndex> columns = columns_of(change.columns);
+  grids_.follow(columns);
+  poses_.follow(columns);
   return {change.anywhere ? std::vector{kAnything} : places(change.columns), {}};
 }
 
 Level::Update Level::moved(const std::string& robot, const std::vector<BrickIndex>& columns) {
   if (columns.empty()) return {};
   grids_.follow(columns);
+  poses_.follow(columns);
   std::vector<ColumnChange> changes;
   for (const BrickIndex column : columns) changes.push_back({column, ~std::uint64_t{0}, ~std::uint64_t{0}});
   return {places(changes), robot};

@@ -3,11 +3,12 @@
 #include <vector>
 
 #include "planner/leg.hpp"
+#include "planner/pose_planners.hpp"
 
 namespace concord {
 
 /// One height band of the map with all that robots of that height meet: its grid, the zones and robots that reach into
-/// it, and what is searched for each radius.
+/// it, and what is searched for each radius and footprint.
 class Level {
  public:
   explicit Level(Grid grid);
@@ -34,6 +35,7 @@ class Level {
   [[nodiscard]] const RobotLayer& robots() const { return robots_; }
   [[nodiscard]] Terrain terrain() const { return {grid_, zones_, robots_}; }
   [[nodiscard]] RobotGrids& grids() { return grids_; }
+  [[nodiscard]] PosePlanners& poses() { return poses_; }
 
  private:
   [[nodiscard]] Update moved(const std::string& robot, const std::vector<BrickIndex>& columns);
@@ -42,6 +44,7 @@ class Level {
   ZoneLayer zones_;
   RobotLayer robots_;
   RobotGrids grids_;
+  PosePlanners poses_;
 };
 
 /// Anything may have changed anywhere.

@@ -11,7 +11,9 @@ int main(int argc, char** argv) {
   using concord::Site;
   return concord::run_process(
       "planner", argc, argv,
-      [](const NodeContext& context) -> std::shared_ptr<void> { return std::make_shared<PlannerNode>(context); },
+      [](const NodeContext& context) -> std::shared_ptr<void> {
+        return std::make_shared<PlannerNode>(context, std::launch::async);
+      },
       [](CLI::App& app, Site& site) {
         app.add_option_function<std::pair<double, double>>(
                "--band",

@@ -18,7 +18,8 @@ PlanResult refusal(Reason reason, std::string message) {
   return result;
 }
 
-/// The no-go zones in columns of bricks that come within what a search keeps away from.
+}  // namespace
+
 std::vector<std::string> zones_near(const RobotTask& task, const std::vector<Eigen::Vector2d>& points) {
   const ZoneLayer& zones = task.terrain().zones();
   std::set<std::string> names;
@@ -45,8 +46,6 @@ std::vector<std::string> zones_near(const RobotTask& task, const std::vector<Eig
   }
   return {names.begin(), names.end()};
 }
-
-}  // namespace
 
 std::optional<Objection> check_request(const Eigen::Vector2d& start, const Eigen::Vector2d& goal, double radius,
                                        double resolution) {

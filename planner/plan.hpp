@@ -36,6 +36,9 @@ struct PlanResult {
 /// The distance of a point to the same, as far as a metre or what a search keeps away from.
 [[nodiscard]] double clearance_at(const RobotTask& task, const Eigen::Vector2d& p);
 
+/// The no-go zones in columns of bricks that come within what a search keeps away from, by name.
+[[nodiscard]] std::vector<std::string> zones_near(const RobotTask& task, const std::vector<Eigen::Vector2d>& points);
+
 /// What was found, measured, and with the validator's last word on it. A robot that stands in a no-go zone takes `exit`
 /// first: on it the zones it stands in are not heeded.
 [[nodiscard]] PlanResult finish(const RobotTask& task, Route::Found found, const std::optional<WayOut>& exit = {});

@@ -96,9 +96,9 @@ void Planner::follow(Active& active, const std::vector<Changed>& changes) {
   wait(active);
 }
 
-bool Planner::set_pose(const std::string& robot, const Eigen::Vector2d& p_map, double radius) {
+bool Planner::set_pose(const std::string& robot, const Eigen::Vector2d& p_map, double radius, double yaw) {
   if (poses_.size() >= kMaxPoses && !poses_.contains(robot)) return false;
-  poses_[robot] = {p_map, radius};
+  poses_[robot] = {p_map, radius, yaw};
   for (const auto& level : levels_) {
     const Level::Update update = radius > 0 ? level->set_robot(robot, p_map, radius) : level->remove_robot(robot);
     if (!update.places.empty()) heed(level.get(), update);

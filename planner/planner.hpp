@@ -21,6 +21,7 @@ namespace concord {
 struct Robot {
   double radius = 0.3;                                 ///< metres
   double speed = 0.5;                                  ///< m/s
+  std::optional<Body> body = {};                       ///< none: a disc of `radius`; else that is the disc around it
   std::optional<std::pair<double, double>> band = {};  ///< heights, map z, metres; none: the planner's
 };
 
@@ -55,9 +56,9 @@ class Planner {
   [[nodiscard]] const ZoneLayer& zones() const { return levels_.front()->zones(); }
   [[nodiscard]] Terrain terrain() const { return levels_.front()->terrain(); }
 
-  /// Where a robot is, map frame. With a radius it stands in the way of the others, at all heights. False if it is one
-  /// robot too many.
-  bool set_pose(const std::string& robot, const Eigen::Vector2d& p_map, double radius = 0.0);
+  /// Where a robot is, and where it points, map frame. With a radius it stands in the way of the others, at all
+  /// heights. False if it is one robot too many.
+  bool set_pose(const std::string& robot, const Eigen::Vector2d& p_map, double radius = 0.0, double yaw = 0.0);
   /// Only these robots are anywhere in the map: where others were is forgotten.
   void keep_poses(const std::set<std::string>& aligned);
 
@@ -90,6 +91,10 @@ class Planner {
   /// revision; one that waits to be planned anew, as of the revision it was found on.
   std::vector<Path> repeat(const Moment& moment);
 
+  /// The next search for a robot that is not round, if none is under way: to be run in any thread, until it is done.
+  /// What comes of it, `serve` and `replan` have. Who destroys the planner sees to it first that none runs.
+  [[nodiscard]] std::shared_ptr<PoseQuest> next_quest();
+
   [[nodiscard]] std::size_t active_count() const { return active_.size(); }
   struct Cut {
     Eigen::Vector2d p;  ///< map frame, metres
@@ -104,6 +109,24 @@ class Planner {
   [[nodiscard]] std::vector<Path> kept() const;
 
  private:
+  /// A search for poses that waits for its turn or is under way; withdrawn when it is forgotten.
+  struct PoseJob {
+    std::string robot;
+    Level* level;
+    std::shared_ptr<PosePlanner> planner;
+    Pose start;
+    std::vector<PoseTarget> targets;
+    std::optional<PosePlan> refused = {};   ///< when its turn came
+    std::shared_ptr<PoseQuest> quest = {};  ///< none before that
+
+    PoseJob(std::string of, Level* on, std::shared_ptr<PosePlanner> by, const Pose& from, std::vector<PoseTarget> to)
+        : robot(std::move(of)), level(on), planner(std::move(by)), start(from), targets(std::move(to)) {}
+    PoseJob(const PoseJob&) = delete;
+    PoseJob& operator=(const PoseJob&) = delete;
+    ~PoseJob() {
+      if (quest) quest->withdraw();
+    }
+  };
   struct Active {
     PathRequest request;
     Robot robot;
@@ -120,10 +143,16 @@ class Planner {
     std::int64_t begun = 0;                ///< version of the terrain that the search from scratch began on
     std::optional<Eigen::Vector2d> cut;    ///< where an edit cuts the way off, until it is asked about
     bool must_begin_anew = false;          ///< the robot has left its path
+    std::optional<Objection> refused;      ///< what it was asked for cannot be
+    std::vector<Pose> poses;               ///< `points` with yaws, of a robot with a body
+    std::shared_ptr<PoseJob> job;          ///< while one is looked for
+    int tries = 0;                         ///< of searches that a change came into
   };
 
   /// Between two calls of `serve` about so many cells may be looked at: some 100 ms.
   static constexpr std::int64_t kEffort = 1'000'000;
+  /// To hold one against the map.
+  static constexpr std::int64_t kEffortOfAPose = 100;
 
   [[nodiscard]] static RobotTask task(const Active& active) { return {active.level->grids(), active.robot.radius}; }
   [[nodiscard]] Level* level_for(const Robot& robot);
@@ -131,6 +160,12 @@ class Planner {
   [[nodiscard]] std::optional<Objection> objection(const Active& active) const;
   [[nodiscard]] bool find(Active& active, const Moment& moment);
   [[nodiscard]] bool keep_up(Active& active, const Moment& moment);
+  [[nodiscard]] static std::vector<PoseTarget> targets_of(const PathRequest& request);
+  [[nodiscard]] std::optional<PlanResult> begin_poses(Active& active);
+  [[nodiscard]] bool find_poses(Active& active, const Moment& moment);
+  [[nodiscard]] bool keep_up_poses(Active& active);
+  static void tell_of(Active& active, const std::vector<double>& clearance);
+  [[nodiscard]] bool is_anybodys_turn() const;
   void take(Active& active, PlanResult result, const Moment& moment);
   static void measure(Active& active);
   [[nodiscard]] std::optional<Eigen::Vector2d> nearest(const Active& active, const PlanResult& result) const;
@@ -150,14 +185,17 @@ class Planner {
   std::vector<std::unique_ptr<Level>> levels_;  ///< the first is the site's
   std::vector<Zone> said_zones_;
   bool has_zones_ = false;  ///< they have been said, be it that there are none
-  struct Pose {
+  struct Standing {
     Eigen::Vector2d p;  ///< metres
     double radius;      ///< as an obstacle; 0: it is none
+    double yaw;
   };
-  std::map<std::string, Pose> poses_;
+  std::map<std::string, Standing> poses_;
   std::map<std::string, Active> active_;  ///< by robot
   std::deque<Active> waiting_;            ///< not answered yet
-  std::int64_t version_ = 0;              ///< of the terrain
+  std::deque<std::weak_ptr<PoseJob>> jobs_;
+  std::shared_ptr<PoseQuest> running_;
+  std::int64_t version_ = 0;  ///< of the terrain
   bool is_stale_ = false;
   std::int64_t turns_ = 0;      ///< given out so far
   std::int64_t last_path_ = 0;  ///< path_id

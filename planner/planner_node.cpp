@@ -1,7 +1,11 @@
 #include "planner/planner_node.hpp"
 
+#include <chrono>
+#include <cmath>
 #include <set>
 #include <string>
+
+#include "planner/footprint/footprint_text.hpp"
 
 namespace concord {
 namespace {
@@ -17,9 +21,24 @@ Grid make_grid(const Site& site) {
   return {site.resolution, *band, site.planner.free_share};
 }
 
+std::optional<Body> body_of(const std::string& id, const AgentConfig& agent) {
+  if (agent.footprint.empty()) return std::nullopt;
+  const auto footprint = read_footprint(agent.footprint);
+  if (!footprint) throw ConfigError("agents." + id + ".footprint: " + footprint.error().message);
+  return Body{*footprint, agent.turn_radius};
+}
+
+std::map<std::string, Body> bodies_of(const Site& site) {
+  std::map<std::string, Body> bodies;
+  for (const auto& [id, agent] : site.agents) {
+    if (const auto body = body_of(id, agent)) bodies.emplace(id, *body);
+  }
+  return bodies;
+}
+
 }  // namespace
 
-PlannerNode::PlannerNode(const NodeContext& context)
+PlannerNode::PlannerNode(const NodeContext& context, std::launch how)
     : context_(context),
       planner_(make_grid(context.site)),
       sender_(context.bus, context.counters,
@@ -34,7 +53,10 @@ PlannerNode::PlannerNode(const NodeContext& context)
                  .on_end = [this] { planner_.clear_map(); }}),
       zones_(context.bus, context.counters, "out/zones", [this](const std::vector<Zone>& zones) { on_zones(zones); }),
       watches_(context),
-      blamed_(context) {
+      blamed_(context),
+      how_(how),
+      bodies_(bodies_of(context.site)),
+      unlisted_(body_of("unlisted", context.site.unlisted)) {
   Bus& bus = context_.bus;
   Counters& counters = context_.counters;
   const std::string& self = context_.process;
@@ -45,9 +67,11 @@ PlannerNode::PlannerNode(const NodeContext& context)
     receiver_.on_digest(digest);
   });
   listen<MapPose>(bus, counters, self, "out/pose/.*", [this](const std::string& channel, const MapPose& pose) {
-    const AgentConfig& agent = context_.site.agent(pose.agent);
-    const double radius = agent.kind == "headset" ? 0.0 : agent.radius;
-    if (!planner_.set_pose(pose.agent, pose.T_map_base.translation().head<2>(), radius)) {
+    const bool is_headset = context_.site.agent(pose.agent).kind == "headset";
+    const double radius = is_headset ? 0.0 : robot(pose.agent).radius;
+    const Eigen::Matrix3d& turned = pose.T_map_base.linear();
+    const double yaw = std::atan2(turned(1, 0), turned(0, 0));
+    if (!planner_.set_pose(pose.agent, pose.T_map_base.translation().head<2>(), radius, yaw)) {
       context_.counters.refused(channel, {Code::kTooLarge, "poses of more robots than are kept"});
     }
   });
@@ -66,8 +90,23 @@ PlannerNode::PlannerNode(const NodeContext& context)
                       [this](const std::string&, const PathRequest& request) { on_request(request); });
   bus.every(kTick, [this] {
     project();
+    go_on();
     speak();
   });
+}
+
+PlannerNode::~PlannerNode() {
+  if (quest_) quest_->withdraw();
+}
+
+/// The search that is under way, if it has ended; and the next.
+void PlannerNode::go_on() {
+  if (search_.valid()) {
+    if (search_.wait_for(std::chrono::seconds(0)) == std::future_status::timeout) return;
+    search_.get();
+  }
+  quest_ = planner_.next_quest();
+  if (quest_) search_ = std::async(how_, [quest = quest_] { quest->run(); });
 }
 
 /// What was known before is void: the grid empties, and its stream begins anew in the new frame.
@@ -115,7 +154,13 @@ void PlannerNode::on_agents(const AgentList& list) {
 
 Robot PlannerNode::robot(const std::string& id) const {
   const AgentConfig& agent = context_.site.agent(id);
-  return {agent.radius, agent.speed, agent.band};
+  Robot robot{agent.radius, agent.speed, unlisted_, agent.band};
+  if (context_.site.agents.contains(id)) {
+    const auto it = bodies_.find(id);
+    robot.body = it != bodies_.end() ? std::optional(it->second) : std::nullopt;
+  }
+  if (robot.body) robot.radius = robot.body->footprint.circumscribed();
+  return robot;
 }
 
 void PlannerNode::on_request(const PathRequest& request) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <future>
+#include <map>
 #include <memory>
 
 #include "bus/brick_stream.hpp"
@@ -14,8 +16,14 @@ namespace concord {
 /// The planner on the bus: hears the map, the zones, poses and path requests; says the grid, paths and answers.
 class PlannerNode {
  public:
-  /// @throws ConfigError for a height band that holds no voxel.
-  explicit PlannerNode(const NodeContext& context);
+  /// `how` searches that may take seconds are made: beside the bus (async), or within it (deferred), where time stands
+  /// still.
+  /// @throws ConfigError for a height band that holds no voxel, and for a footprint that is none.
+  PlannerNode(const NodeContext& context, std::launch how);
+  /// Ends what is being searched.
+  ~PlannerNode();
+  PlannerNode(const PlannerNode&) = delete;
+  PlannerNode& operator=(const PlannerNode&) = delete;
 
   [[nodiscard]] const Planner& planner() const { return planner_; }
   [[nodiscard]] const BrickReceiver& map() const { return receiver_; }
@@ -29,6 +37,7 @@ class PlannerNode {
   void cancel(const PathRequest& request);
   void on_watch(const std::string& channel, const PathWatch& watch);
   void project();
+  void go_on();
   void speak();
   void reply(const Planner::Reply& reply);
   void publish(const Path& path);
@@ -44,6 +53,11 @@ class PlannerNode {
   WatchesNode watches_;
   BlamedEditsNode blamed_;
   std::int64_t map_heard_ = 0;
+  std::launch how_;
+  std::map<std::string, Body> bodies_;  ///< of agents that the site file gives one
+  std::optional<Body> unlisted_;
+  std::shared_ptr<PoseQuest> quest_;
+  std::future<void> search_;  ///< of it; ends before all else
 };
 
 }  // namespace concord

@@ -33,6 +33,7 @@ std::optional<Objection> Planner::objection(const Active& active) const {
                      "nobody has said where " + active.request.robot + " is in the map: align it, or give a start"};
   }
   const double r = grid().resolution();
+  if (active.refused) return active.refused;
   if (auto wrong = check_request(*active.start, active.request.goal, active.robot.radius, r)) return wrong;
   if (active.level == nullptr) {
     return Objection{Reason::kBadRequest, "the heights of " + active.request.robot +
@@ -79,6 +80,10 @@ void Planner::take(Active& active, PlanResult result, const Moment& moment) {
   active.cut = result.reason == Reason::kBlockedByEdit ? result.cut : std::nullopt;
   path.length = result.length;
   path.radius = active.robot.radius;
+  if (active.robot.body) {
+    path.footprint = active.robot.body->footprint.polygon();
+    path.turn_radius = active.robot.body->turn_radius;
+  }
   if (active.level != nullptr) {
     const Band& band = active.level->grid().band();
     path.zmin = band.floor;
@@ -92,10 +97,12 @@ void Planner::take(Active& active, PlanResult result, const Moment& moment) {
   path.zones = std::move(result.zones);
   if (result.points.empty() && !result.legs.empty()) path.failed_leg = result.legs.front();
   active.points = std::move(result.points);
+  active.poses.clear();
   if (active.points.empty()) return;
   path.details.resize(active.points.size());
   for (std::size_t i = 0; i < result.legs.size(); ++i) path.details[i].leg = result.legs[i];
-  measure(active);
+  if (!active.robot.body) return measure(active);
+  path.least_clearance = result.least_clearance;
 }
 
 /// Of a goal or waypoint that cannot be reached.
@@ -115,6 +122,7 @@ std::optional<Eigen::Vector2d> Planner::nearest(const Active& active, const Plan
 bool Planner::find(Active& active, const Moment& moment) {
   const std::string& robot = active.request.robot;
   if (active.level != nullptr) active.level->look_as(robot);
+  if (active.robot.body) return find_poses(active, moment);
   if (!active.route) {
     const auto pose = poses_.find(robot);
     active.start = active.request.start;

@@ -96,8 +96,14 @@ Planner::Reply Planner::request(const PathRequest& request, const Robot& robot, 
   now.request = request;
   now.robot = robot;
   if (request.radius > 0) now.robot.radius = request.radius;
+  if (!request.footprint.empty()) {
+    const auto footprint = Footprint::make(request.footprint);
+    if (footprint) now.robot.body = Body{*footprint, request.turn_radius};
+    if (!footprint) now.refused = Objection{Reason::kBadRequest, "the footprint: " + footprint.error().message};
+  }
+  if (now.robot.body) now.robot.radius = now.robot.body->footprint.circumscribed();
   now.level = level_for(robot);
-  if (effort_ < kEffort && waiting_.empty() && find(now, moment)) return settle(std::move(now), moment);
+  if (effort_ < kEffort && !is_anybodys_turn() && find(now, moment)) return settle(std::move(now), moment);
   if (waiting_.size() < kMaxWaiting) {
     waiting_.push_back(std::move(now));
     return {};
@@ -133,12 +139,23 @@ Planner::Reply Planner::settle(Active active, const Moment& moment) {
 std::vector<Planner::Reply> Planner::serve(const Moment& moment) {
   effort_ = 0;
   std::vector<Reply> replies;
-  while (!waiting_.empty() && effort_ < kEffort && find(waiting_.front(), moment)) {
-    Active done = std::move(waiting_.front());
-    waiting_.pop_front();
-    replies.push_back(settle(std::move(done), moment));
+  for (auto it = waiting_.begin(); it != waiting_.end() && effort_ < kEffort;) {
+    if (find(*it, moment)) {
+      Active done = std::move(*it);
+      it = waiting_.erase(it);
+      replies.push_back(settle(std::move(done), moment));
+    } else if (it->job) {
+      ++it;  // its search runs beside this: others need not wait for it
+    } else {
+      break;
+    }
   }
   return replies;
+}
+
+/// Whether somebody waits for the next call of `serve`.
+bool Planner::is_anybodys_turn() const {
+  return std::any_of(waiting_.begin(), waiting_.end(), [](const Active& active) { return !active.job; });
 }
 
 void Planner::wait(Active& active) {
@@ -148,7 +165,7 @@ void Planner::wait(Active& active) {
 std::vector<Planner::Active*> Planner::due(const Moment& moment) {
   std::vector<Active*> due;
   for (auto& [robot, active] : active_) {
-    const bool rests = active.points.empty() && !active.route && is_failed_search(active.path) &&
+    const bool rests = active.points.empty() && !active.route && !active.job && is_failed_search(active.path) &&
                        is_recent(active.path.utime, moment.utime);
     if (active.turn != 0 && !rests) due.push_back(&active);
   }
@@ -163,13 +180,24 @@ std::vector<Path> Planner::replan(const Moment& moment) {
     const Path before = active->path;
     const std::string found_before = active->found;
     const bool left_a_zone = active->exit.has_value();
-    if (!keep_up(*active, moment)) {
-      if (!active->points.empty()) active->route.reset();
+    const bool is_kept = active->robot.body ? keep_up_poses(*active) : keep_up(*active, moment);
+    if (!is_kept) {
+      const bool was_found = !active->points.empty();
+      if (was_found) active->route.reset();
       active->points.clear();
+      active->poses.clear();
       active->must_begin_anew = false;
-      if (!find(*active, moment)) continue;
+      if (!find(*active, moment)) {
+        if (!was_found || !active->job) continue;
+        // That it does not hold any more is said now: the next may take seconds.
+        PlanResult none;
+        none.reason = Reason::kReplanning;
+        none.message = "the path does not hold any more, and another is looked for: stop";
+        take(*active, std::move(none), moment);
+      }
     }
     active->turn = 0;
+    if (active->job) wait(*active);
     const bool is_another = active->path.status != before.status || active->path.points != before.points ||
                             left_a_zone != active->exit.has_value() ||
                             (active->points.empty() && active->found != found_before);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 
 #include "planner/ends.hpp"
@@ -18,167 +17,221 @@ PosePlan refusal(Reason reason, std::string message) {
   return plan;
 }
 
-}  // namespace
-
-/// One end of the path and the reasons that are its own.
-struct PosePlanner::End {
-  const char* what;
-  Pose pose;
-  Reason outside, no_go, occupied, unknown, clearance;
-
-  [[nodiscard]] std::string name() const {
-    char text[128];
-    std::snprintf(text, sizeof(text), "the %s (%.2f, %.2f, %.2f)", what, pose.p.x(), pose.p.y(), pose.yaw);
-    return text;
-  }
-  [[nodiscard]] PosePlan too_near() const {
-    return refusal(clearance, "at " + name() +
-                                  " the footprint overlaps a wall, an unobserved cell or a no-go zone: turn it or move "
-                                  "it away");
-  }
-};
-
-PosePlanner::PosePlanner(const Grid& grid, const ZoneLayer& zones, Footprint footprint, double turn_radius)
-    : grid_(grid), zones_(zones), footprint_(std::move(footprint)), turn_radius_(turn_radius) {}
-
-bool PosePlanner::holds(BrickIndex column) const {
-  return column.x >= low_.x && column.y >= low_.y && column.x <= high_.x && column.y <= high_.y;
+End target_at(const Eigen::Vector2d& p, std::size_t leg, std::size_t count) {
+  return leg + 1 < count ? waypoint_at(p, leg + 1) : goal_at(p);
 }
 
-void PosePlanner::copy(BrickIndex column) {
-  const std::uint64_t passable = Terrain(grid_, zones_).at(column).passable;
-  for (int local = 0; local < 64; ++local) {
-    const Cell cell{(column.x - low_.x) * 8 + (local & 7), (column.y - low_.y) * 8 + (local >> 3)};
-    open_->set(cell, (passable >> local & 1) != 0);
+PosePlan failed_at(std::size_t leg, std::size_t count, PosePlan plan) {
+  plan.legs = {static_cast<std::int32_t>(leg)};
+  if (leg + 1 == count || plan.reason == Reason::kSearchLimit) return plan;
+  plan.reason = Reason::kWaypointUnreachable;
+  plan.message = "waypoint " + std::to_string(leg + 1) + " cannot be reached: " + plan.message;
+  return plan;
+}
+
+PosePlan too_near_for(const End& end) {
+  return refusal(end.clearance, "at " + describe(end) +
+                                    " the footprint overlaps a wall, an unobserved cell, a robot or a no-go zone: turn "
+                                    "it or move it away");
+}
+
+}  // namespace
+
+PosePlanner::PosePlanner(const Terrain& terrain, Body body) : terrain_(terrain), body_(std::move(body)) {}
+
+std::int64_t PosePlanner::cells() const {
+  return area_ ? std::int64_t{area_->open().width()} * area_->open().height() : 0;
+}
+
+void PosePlanner::lay_out() {
+  if (area_) {
+    for (const BrickIndex column : touched_) {
+      if (!area_->holds(column)) {  // the rectangle has grown: all of it anew
+        area_.reset();
+        break;
+      }
+      const std::uint64_t cells = passable(column);
+      (void)area_->set(column, cells);
+      if (ground_) ground_->changed.push_back({column, cells});
+    }
   }
+  touched_.clear();
+  if (area_) return;
+  ground_.reset();
+  BrickIndex low{kMaxVoxel, kMaxVoxel, 0}, high{-kMaxVoxel, -kMaxVoxel, 0};
+  const BrickMap& known = terrain_.grid().cells();
+  known.for_each_brick([&](BrickIndex b, const Brick&) {
+    low = {std::min(low.x, b.x), std::min(low.y, b.y), 0};
+    high = {std::max(high.x, b.x), std::max(high.y, b.y), 0};
+  });
+  const std::int64_t width = 8 * (std::int64_t{high.x} - low.x + 1), height = 8 * (std::int64_t{high.y} - low.y + 1);
+  if (width < 1 || height < 1 || width * height > kMaxCells || std::max(width, height) > OpenGrid::kMaxSide) return;
+  area_ = std::make_unique<PoseArea>(low, high);
+  known.for_each_brick([&](BrickIndex b, const Brick&) { (void)area_->set({b.x, b.y, 0}, passable({b.x, b.y, 0})); });
 }
 
 void PosePlanner::prepare() {
-  if (search_) return;
-  open_.reset();
-  low_ = {kMaxVoxel, kMaxVoxel, 0};
-  high_ = {-kMaxVoxel, -kMaxVoxel, 0};
-  grid_.cells().for_each_brick([&](BrickIndex b, const Brick&) {
-    low_ = {std::min(low_.x, b.x), std::min(low_.y, b.y), 0};
-    high_ = {std::max(high_.x, b.x), std::max(high_.y, b.y), 0};
-  });
-  const std::int64_t width = 8 * (std::int64_t{high_.x} - low_.x + 1),
-                     height = 8 * (std::int64_t{high_.y} - low_.y + 1);
-  if (width < 1 || height < 1 || width * height > kMaxCells) return;
-  open_ = std::make_unique<OpenGrid>(static_cast<int>(width), static_cast<int>(height));
-  grid_.cells().for_each_brick([&](BrickIndex b, const Brick&) { copy(b); });
-  const double per_cell = 1 / grid_.resolution();
-  search_ = std::make_unique<PoseSearch>(*open_, footprint_.scaled(per_cell), turn_radius_ * kChordRadius * per_cell);
+  lay_out();
+  if (!area_ || (ground_ && ground_->search)) return;
+  // A search of no length makes it.
+  begin({}, {})->run();
 }
 
 void PosePlanner::update(std::span<const BrickIndex> columns) {
-  if (!search_) return;
-  for (const BrickIndex& column : columns) {
-    if (!holds(column)) return search_.reset();  // the rectangle has grown: all of it anew when it is next needed
-  }
-  for (const BrickIndex& column : columns) {
-    copy(column);
-    const Cell corner{(column.x - low_.x) * 8, (column.y - low_.y) * 8};
-    search_->update({corner, {corner.x + 7, corner.y + 7}});
-  }
+  if (area_) touched_.insert(columns.begin(), columns.end());
 }
 
-std::optional<PosePlan> PosePlanner::check_cell(const End& end) const {
-  const Eigen::Vector2d p = end.pose.p / grid_.resolution();
-  const std::string where = end.name();
-  if (p.cwiseAbs().maxCoeff() >= kMaxVoxel) return refusal(end.outside, where + " lies outside the map");
-  const Cell cell = cell_of(p);
-  if (const std::string* zone = zones_.no_go_at(cell)) {
-    return refusal(end.no_go, where + " lies in the no-go zone '" + *zone + "'");
+std::optional<PosePlan> PosePlanner::check(const Pose& start, std::span<const PoseTarget> targets) {
+  const bool are_numbers =
+      start.is_finite() && std::all_of(targets.begin(), targets.end(), [](const PoseTarget& target) {
+        return target.p.allFinite() && std::isfinite(target.yaw.value_or(0));
+      });
+  if (!are_numbers) return refusal(Reason::kBadRequest, "start and goal must be numbers");
+  const double turn = body_.turn_radius;
+  const bool turns = turn == 0 || (turn >= kMinTurnRadius && turn <= kMaxTurnRadius);
+  if (!turns) return refusal(Reason::kBadRequest, "the turn radius must be 0, or from 0.01 to 100 m");
+  if (body_.footprint.circumscribed() / terrain_.resolution() > kMaxRadiusCells) {
+    return refusal(Reason::kBadRequest, "the footprint reaches further than 1024 cells");
   }
-  const LogOdds state = grid_.at(cell);
-  if (is_free(state)) return std::nullopt;
-  if (is_known(state)) return refusal(end.occupied, where + " is occupied");
-  if (holds({cell.x >> 3, cell.y >> 3, 0})) return refusal(end.unknown, where + " has not been observed free");
-  return refusal(end.outside, where + " lies outside the map");
+  if (terrain_.grid().cells().empty()) {
+    return refusal(Reason::kNoMap, "nothing has been observed in the height band yet");
+  }
+  if (auto wrong = check_cell(terrain_, start_at(start.p))) return refusal(wrong->reason, std::move(wrong->message));
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    if (auto wrong = check_cell(terrain_, target_at(targets[i].p, i, targets.size()))) {
+      return failed_at(i, targets.size(), refusal(wrong->reason, std::move(wrong->message)));
+    }
+  }
+  lay_out();
+  if (!area_) return refusal(Reason::kSearchLimit, "the map is too big to plan for a footprint: over 16 million cells");
+  return std::nullopt;
 }
 
-Pose PosePlanner::to_cells(const Pose& pose) const {
-  return {pose.p / grid_.resolution() - 8.0 * Eigen::Vector2d(low_.x, low_.y), pose.yaw};
+std::shared_ptr<PoseQuest> PosePlanner::begin(const Pose& start, std::vector<PoseTarget> targets) {
+  lay_out();
+  if (!ground_) {
+    const double per_cell = 1 / terrain_.resolution();
+    ground_ = std::make_shared<PoseGround>(
+        PoseGround{*area_, body_.footprint.scaled(per_cell), body_.turn_radius * kChordRadius * per_cell, {}, nullptr});
+  }
+  return std::make_shared<PoseQuest>(ground_, start, std::move(targets), terrain_.resolution());
 }
 
-PosePlan PosePlanner::finish(const PoseRoute& route, const Pose& start, const Pose& goal) const {
-  const double r = grid_.resolution();
-  const Eigen::Vector2d corner = 8 * r * Eigen::Vector2d(low_.x, low_.y);
+/// The validator's frame begins at the area's corner.
+std::optional<std::string> PosePlanner::fault(std::span<const Pose> poses) const {
+  const double r = terrain_.resolution();
+  std::vector<Pose> local(poses.begin(), poses.end());
+  for (Pose& pose : local) pose.p -= area_->corner() * r;
+  return fault_of({area_->open(), r, body_.footprint, body_.turn_radius, local.front(), local.back()}, local);
+}
+
+PosePlanner::Room PosePlanner::room(std::span<const Pose> poses) {
+  lay_out();
+  if (!area_) return {std::vector<double>(poses.size(), 0.0), 0.0};
+  const double r = terrain_.resolution();
+  std::vector<Pose> local(poses.begin(), poses.end());
+  for (Pose& pose : local) pose.p -= area_->corner() * r;
+  PoseClearance clearance = clearance_of(
+      {area_->open(), r, body_.footprint, body_.turn_radius, local.front(), local.back()}, local, kClearanceReach);
+  return {std::move(clearance.at), clearance.least};
+}
+
+bool PosePlanner::is_clear(std::span<const Pose> poses, const Window& cells) {
+  lay_out();
+  if (!area_) return false;
+  const double r = terrain_.resolution();
+  const double reach = body_.footprint.circumscribed() + r;
+  const Eigen::Vector2d low = Eigen::Vector2d(cells.low.x, cells.low.y) * r - Eigen::Vector2d::Constant(reach);
+  const Eigen::Vector2d high =
+      Eigen::Vector2d(cells.high.x + 1, cells.high.y + 1) * r + Eigen::Vector2d::Constant(reach);
+  const auto comes_near = [&](const Pose& a, const Pose& b) {
+    return (a.p.cwiseMin(b.p).array() <= high.array()).all() && (a.p.cwiseMax(b.p).array() >= low.array()).all();
+  };
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    if (comes_near(poses[i - 1], poses[i]) && fault(poses.subspan(i - 1, 2))) return false;
+  }
+  return poses.size() > 1 || !fault(poses);
+}
+
+PosePlan PosePlanner::refusal_of(const PoseQuest& quest) const {
+  const std::size_t leg = quest.legs().size() - 1;
+  const PoseRoute& route = quest.legs().back();
+  const std::size_t count = quest.count();
+  switch (route.outcome) {
+    case PoseOutcome::kStartBlocked: {
+      if (leg == 0) return too_near_for(start_at(quest.places().front().p));
+      return failed_at(leg - 1, count, too_near_for(target_at(quest.places()[leg].p, leg - 1, count)));
+    }
+    case PoseOutcome::kGoalBlocked:
+      return failed_at(leg, count, too_near_for(target_at(quest.places().back().p, leg, count)));
+    case PoseOutcome::kNoWay:
+      return failed_at(leg, count,
+                       refusal(Reason::kNoValidPath,
+                               "no way through: even the largest disc in the footprint is cut off from the goal, by "
+                               "walls, no-go zones or space not yet observed"));
+    case PoseOutcome::kGaveUp:
+      return failed_at(
+          leg, count,
+          refusal(Reason::kSearchLimit, "no way was found in " + std::to_string(route.steps) +
+                                            " steps: it may be too narrow for the footprint or its turns"));
+    case PoseOutcome::kFound:
+    case PoseOutcome::kStopped: break;
+  }
+  PosePlan stopped;
+  stopped.stopped = true;
+  return stopped;
+}
+
+PosePlan PosePlanner::finish(const PoseQuest& quest, std::int64_t map_revision) {
+  lay_out();
   PosePlan plan;
-  for (const Pose& pose : route.poses) plan.poses.push_back({pose.p * r + corner, wrapped(pose.yaw)});
-  plan.poses.front() = start;
-  plan.poses.back() = goal;
-  // The validator's frame begins at the rectangle's corner.
-  std::vector<Pose> local = plan.poses;
-  for (Pose& pose : local) pose.p -= corner;
-  const PoseTerms terms{*open_, r, footprint_, turn_radius_, local.front(), local.back()};
-  if (const auto fault = fault_of(terms, local)) {
-    return refusal(Reason::kValidationFailed,
-                   "the path that was found does not stand the final check, " + *fault + ": report this");
+  double length = 0;
+  for (const PoseRoute& leg : quest.legs()) {
+    plan.steps += leg.steps;
+    length += leg.length * terrain_.resolution();
   }
-  const PoseClearance clearance = clearance_of(terms, local, kClearanceReach);
-  plan.reason = Reason::kOk;
-  plan.clearance = clearance.at;
-  plan.least_clearance = clearance.least;
-  plan.length = route.length * r;
-  plan.message =
-      "a path of " + metres(plan.length) + ", with at least " + metres(plan.least_clearance) + " around the footprint";
+  const std::int64_t steps = plan.steps;
+  if (quest.legs().back().outcome != PoseOutcome::kFound) {
+    plan = refusal_of(quest);
+  } else if (!area_) {
+    plan = refusal(Reason::kSearchLimit, "the map is too big to plan for a footprint: over 16 million cells");
+  } else {
+    for (std::size_t leg = 0; leg < quest.legs().size(); ++leg) {
+      const std::vector<Pose>& poses = quest.legs()[leg].poses;
+      for (std::size_t i = leg == 0 ? 0 : 1; i < poses.size(); ++i) {
+        const Pose& pose = poses[i];
+        plan.poses.push_back({(pose.p + quest.corner()) * terrain_.resolution(), wrapped(pose.yaw)});
+        plan.legs.push_back(static_cast<std::int32_t>(leg));
+      }
+      // Exactly as they were asked for.
+      if (leg == 0) plan.poses.front() = quest.places().front();
+      plan.poses.back() = quest.places()[leg + 1];
+    }
+    if (const auto fault = this->fault(plan.poses)) {
+      plan = refusal(Reason::kValidationFailed,
+                     "the path that was found does not stand the final check, " + *fault + ": report this");
+    } else {
+      Room room = this->room(plan.poses);
+      plan.reason = Reason::kOk;
+      plan.clearance = std::move(room.at);
+      plan.least_clearance = room.least;
+      plan.length = length;
+      plan.message = "a path of " + metres(plan.length) + ", with at least " + metres(plan.least_clearance) +
+                     " around the footprint";
+    }
+  }
+  plan.steps = steps;
+  plan.map_revision = map_revision;
   return plan;
 }
 
 PosePlan PosePlanner::plan(const Pose& start, const Pose& goal, std::int64_t map_revision,
                            const std::function<bool()>& stop) {
-  const double r = grid_.resolution();
-  if (!start.is_finite() || !goal.is_finite()) return refusal(Reason::kBadRequest, "start and goal must be numbers");
-  const bool turns = turn_radius_ == 0 || (turn_radius_ >= kMinTurnRadius && turn_radius_ <= kMaxTurnRadius);
-  if (!turns) return refusal(Reason::kBadRequest, "the turn radius must be 0, or from 0.01 to 100 m");
-  if (footprint_.circumscribed() / r > kMaxRadiusCells) {
-    return refusal(Reason::kBadRequest, "the footprint reaches further than 1024 cells");
-  }
-  if (grid_.cells().empty()) return refusal(Reason::kNoMap, "nothing has been observed in the height band yet");
-  const End from{"start",
-                 start,
-                 Reason::kStartOutsideMap,
-                 Reason::kStartInNoGo,
-                 Reason::kStartOccupied,
-                 Reason::kStartUnknown,
-                 Reason::kStartClearance};
-  const End to{"goal",
-               goal,
-               Reason::kGoalOutsideMap,
-               Reason::kGoalInNoGo,
-               Reason::kGoalOccupied,
-               Reason::kGoalUnknown,
-               Reason::kGoalClearance};
-  prepare();
-  for (const End* end : {&from, &to}) {
-    if (auto refused = check_cell(*end)) return *refused;
-  }
-  if (!search_)
-    return refusal(Reason::kSearchLimit, "the map is too big to plan for a footprint: over 16 million cells");
-  PoseEffort effort;
-  effort.stop = stop;
-  const PoseRoute route = search_->find(to_cells(start), to_cells(goal), effort);
-  PosePlan plan;
-  switch (route.outcome) {
-    case PoseOutcome::kFound: plan = finish(route, start, goal); break;
-    case PoseOutcome::kStartBlocked: plan = from.too_near(); break;
-    case PoseOutcome::kGoalBlocked: plan = to.too_near(); break;
-    case PoseOutcome::kNoWay:
-      plan = refusal(Reason::kNoValidPath,
-                     "no way through: even the largest disc in the footprint is cut off from the "
-                     "goal, by walls, no-go zones or space not yet observed");
-      break;
-    case PoseOutcome::kGaveUp:
-      plan = refusal(Reason::kSearchLimit, "no way was found in " + std::to_string(route.steps) +
-                                               " steps: it may be too narrow for the footprint or its turns");
-      break;
-    case PoseOutcome::kStopped: plan.stopped = true; break;
-  }
-  plan.steps = route.steps;
-  plan.map_revision = map_revision;
-  return plan;
+  std::vector<PoseTarget> targets{{goal.p, goal.yaw}};
+  if (auto refused = check(start, targets)) return *refused;
+  const auto quest = begin(start, std::move(targets));
+  quest->run(stop);
+  return finish(*quest, map_revision);
 }
 
 }  // namespace concord

@@ -3,17 +3,28 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "planner/footprint/footprint.hpp"
 #include "planner/plan.hpp"
-#include "planner/se2/pose_search.hpp"
+#include "planner/pose_quest.hpp"
 
 namespace concord {
 
-/// A path for a robot that is not round.
+/// A robot that is not round.
+struct Body {
+  Footprint footprint;
+  double turn_radius = 0;  ///< metres, 0: turns in place
+
+  [[nodiscard]] bool operator==(const Body& other) const {
+    return turn_radius == other.turn_radius && footprint.polygon() == other.footprint.polygon();
+  }
+};
+
+/// A path for such a robot.
 struct PosePlan {
   Reason reason = Reason::kNoMap;
   bool stopped = false;  ///< whoever asked withdrew, or watches the clock: there is no result, `reason` means nothing
@@ -21,14 +32,15 @@ struct PosePlan {
   /// Map frame, metres, from the exact start to the exact goal; empty unless kOk. From one to the next the reference
   /// point goes straight and the yaw changes evenly, the shorter way round; the true arc between them is clear as well.
   std::vector<Pose> poses;
-  std::vector<double> clearance;  ///< by pose, metres, as far as kClearanceReach
-  double length = 0;              ///< of the reference point's way, metres
-  double least_clearance = 0;     ///< from the footprint to a cell that is not free, or no-go, metres
-  std::int64_t map_revision = 0;  ///< what it was checked against, as it was given
-  std::int64_t steps = 0;         ///< of the searches
+  std::vector<std::int32_t> legs;  ///< of each pose; if one fails, that one alone
+  std::vector<double> clearance;   ///< by pose, metres, as far as kClearanceReach
+  double length = 0;               ///< of the reference point's way, metres
+  double least_clearance = 0;      ///< from the footprint to a cell that is not free, or no-go, metres
+  std::int64_t map_revision = 0;   ///< what it was checked against, as it was given
+  std::int64_t steps = 0;          ///< of the searches
 };
 
-/// Plans for one footprint on one grid, and keeps what depends on the grid alone.
+/// Plans for one footprint on one terrain, and keeps what depends on the terrain alone.
 /// Allow-contact zones are not heeded: the footprint keeps clear of all that is not free.
 class PosePlanner {
  public:
@@ -38,35 +50,51 @@ class PosePlanner {
   static constexpr std::int64_t kMaxCells = 16'000'000;
   static constexpr double kClearanceReach = 1.0;
 
-  /// Both must outlive this and change only along with `update`. `turn_radius` in metres, 0: turns in place.
-  PosePlanner(const Grid& grid, const ZoneLayer& zones, Footprint footprint, double turn_radius);
+  /// The terrain's layers must outlive this and change only along with `update`.
+  PosePlanner(const Terrain& terrain, Body body);
 
-  /// Works out what depends on the grid alone; without this, the first question does it.
+  /// Works out what depends on the terrain alone; without this, the first question does it.
   void prepare();
 
-  /// These columns of the grid or of the zones have changed.
+  /// These columns of the terrain have changed; they are looked at when it is next asked.
   void update(std::span<const BrickIndex> columns);
 
   /// Any input is answered; the same in the same way. Map frame, metres. `stop` is asked again and again.
   [[nodiscard]] PosePlan plan(const Pose& start, const Pose& goal, std::int64_t map_revision,
                               const std::function<bool()>& stop);
 
+  /// The same in parts. What no search is needed for to refuse; else `begin` may be called.
+  [[nodiscard]] std::optional<PosePlan> check(const Pose& start, std::span<const PoseTarget> targets);
+  /// On the terrain as it is now. @pre check found nothing against it; what was begun before has been run.
+  [[nodiscard]] std::shared_ptr<PoseQuest> begin(const Pose& start, std::vector<PoseTarget> targets);
+  /// What came of it, held against the terrain as it is now. @pre it is done.
+  [[nodiscard]] PosePlan finish(const PoseQuest& quest, std::int64_t map_revision);
+
+  /// Whether the poses still stand the validator where they come near these cells of the map. @pre they did before the
+  /// cells changed.
+  [[nodiscard]] bool is_clear(std::span<const Pose> poses, const Window& cells);
+  struct Room {
+    std::vector<double> at;  ///< by pose, metres, as far as kClearanceReach
+    double least = 0;
+  };
+  /// Around the footprint, on the terrain as it is now.
+  [[nodiscard]] Room room(std::span<const Pose> poses);
+
+  [[nodiscard]] const Body& body() const { return body_; }
+  /// That it keeps.
+  [[nodiscard]] std::int64_t cells() const;
+
  private:
-  struct End;
+  void lay_out();
+  [[nodiscard]] std::uint64_t passable(BrickIndex column) const { return terrain_.at(column).passable; }
+  [[nodiscard]] std::optional<std::string> fault(std::span<const Pose> poses) const;
+  [[nodiscard]] PosePlan refusal_of(const PoseQuest& quest) const;
 
-  [[nodiscard]] bool holds(BrickIndex column) const;
-  void copy(BrickIndex column);
-  [[nodiscard]] std::optional<PosePlan> check_cell(const End& end) const;
-  [[nodiscard]] Pose to_cells(const Pose& pose) const;
-  [[nodiscard]] PosePlan finish(const PoseRoute& route, const Pose& start, const Pose& goal) const;
-
-  const Grid& grid_;
-  const ZoneLayer& zones_;
-  Footprint footprint_;
-  double turn_radius_;
-  BrickIndex low_{0, 0, 0}, high_{-1, -1, 0};  ///< columns, both included
-  std::unique_ptr<OpenGrid> open_;             ///< none while it is not worked out
-  std::unique_ptr<PoseSearch> search_;
+  Terrain terrain_;
+  Body body_;
+  std::set<BrickIndex> touched_;
+  std::unique_ptr<PoseArea> area_;      ///< what the validator looks at; none while it is not worked out, or too large
+  std::shared_ptr<PoseGround> ground_;  ///< what searches look at
 };
 
 }  // namespace concord

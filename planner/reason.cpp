@@ -23,6 +23,7 @@ const char* name(Reason reason) {
     case Reason::kWaypointUnreachable: return "WAYPOINT_UNREACHABLE";
     case Reason::kBlockedByEdit: return "BLOCKED_BY_EDIT";
     case Reason::kBlockedByUnknown: return "BLOCKED_BY_UNKNOWN";
+    case Reason::kReplanning: return "REPLANNING";
     case Reason::kBusy: return "BUSY";
     case Reason::kMapStale: return "MAP_STALE";
     case Reason::kCancelled: return "CANCELLED";

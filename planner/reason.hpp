@@ -23,6 +23,7 @@ enum class Reason {
   kWaypointUnreachable,
   kBlockedByEdit,
   kBlockedByUnknown,
+  kReplanning,
   kBusy,
   kMapStale,
   kCancelled,

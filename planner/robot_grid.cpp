@@ -29,7 +29,7 @@ bool holds(const CellRectangle& area, const CellRectangle& other) {
 }  // namespace
 
 RobotGrid::RobotGrid(const Terrain& terrain, double radius, const CellRectangle& area)
-    : area_(area), space_(terrain, radius) {
+    : area_(area), terrain_(terrain), space_(terrain, radius) {
   OpenGrid open(area.high.x - area.low.x + 1, area.high.y - area.low.y + 1);
   for (std::int32_t y = area.low.y; y <= area.high.y; y += FreeSpace::kSide) {
     for (std::int32_t x = area.low.x; x <= area.high.x; x += FreeSpace::kSide) {
@@ -44,12 +44,27 @@ RobotGrid::RobotGrid(const Terrain& terrain, double radius, const CellRectangle&
   paths_ = std::make_unique<GridPaths>(std::move(open), GridPaths::kReach, [this](Cell a, Cell b) {
     return space_.sees(centre_of(global(a)), centre_of(global(b)));
   });
+  if (!terrain.has_costs()) return;
+  for (std::int32_t y = area.low.y >> 3; y <= area.high.y >> 3; ++y) {
+    for (std::int32_t x = area.low.x >> 3; x <= area.high.x >> 3; ++x) take_costs({x, y, 0});
+  }
+}
+
+void RobotGrid::take_costs(BrickIndex column) {
+  has_costs_ = has_costs_ || terrain_.has_costs();
+  if (!has_costs_ || !area_.holds({column.x * 8, column.y * 8})) return;
+  const ColumnCosts costs = terrain_.costs(column);
+  for (std::size_t i = 0; i < costs.size(); ++i) {
+    const auto at = static_cast<std::int32_t>(i);
+    (void)paths_->set_extra(local({column.x * 8 + (at & 7), column.y * 8 + (at >> 3)}), costs[i]);
+  }
 }
 
 void RobotGrid::follow(std::span<const BrickIndex> columns) {
   std::set<Cell> tiles;
   for (const BrickIndex column : columns) {
     space_.follow(column);
+    take_costs(column);
     const Cell low = FreeSpace::tile_of({column.x * 8 - reach(), column.y * 8 - reach()});
     const Cell high = FreeSpace::tile_of({column.x * 8 + 7 + reach(), column.y * 8 + 7 + reach()});
     for (std::int32_t y = low.y; y <= high.y; ++y) {

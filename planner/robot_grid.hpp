@@ -33,8 +33,11 @@ class RobotGrid {
 
  private:
   void take(Cell tile);
+  void take_costs(BrickIndex column);
 
   CellRectangle area_;
+  Terrain terrain_;
+  bool has_costs_ = false;  ///< any cell ever had
   FreeSpace space_;
   std::unique_ptr<GridPaths> paths_;
 };

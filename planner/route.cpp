@@ -8,12 +8,6 @@ namespace {
 /// What a leg costs beside its search, in cells looked at.
 constexpr std::int64_t kEffortOfALeg = 1'000;
 
-End waypoint_at(const Eigen::Vector2d& position, std::size_t number) {
-  End end = goal_at(position);
-  end.what = "waypoint " + std::to_string(number);
-  return end;
-}
-
 }  // namespace
 
 Route::Route(const Eigen::Vector2d& start, std::span<const Eigen::Vector2d> waypoints, const Eigen::Vector2d& goal) {

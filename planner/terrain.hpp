@@ -42,6 +42,9 @@ class Terrain {
   [[nodiscard]] const RobotLayer& robots() const { return *robots_; }
   [[nodiscard]] double resolution() const { return grid_->resolution(); }
   [[nodiscard]] bool has_contact() const { return zones_->has_contact(); }
+  /// See ZoneLayer.
+  [[nodiscard]] bool has_costs() const { return zones_->has_costs(); }
+  [[nodiscard]] ColumnCosts costs(BrickIndex column) const { return zones_->costs(column); }
 
  private:
   [[nodiscard]] std::uint64_t free_at(BrickIndex column) const;

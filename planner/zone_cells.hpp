@@ -37,18 +37,18 @@ struct ZoneCells {
   [[nodiscard]] std::uint64_t plane(BrickIndex column) const;
 };
 
-/// The cells whose square the zone touches anywhere in the band. Refused: as by `footprint`; over `most` cells
-/// (kTooLarge).
+/// The cells whose square the zone touches anywhere in the band, and those nearer to one of them than its margin,
+/// square to square. Refused: as by `footprint`; over `most` cells (kTooLarge).
 [[nodiscard]] Result<ZoneCells> draw(const Zone& zone, double resolution, const Band& band, std::int64_t most);
 
-/// How many those are, at the cost of their rows. Refused likewise.
+/// How many those are, at the cost of their rows; with a margin, no fewer. Refused likewise.
 [[nodiscard]] Result<std::int64_t> count(const Zone& zone, double resolution, const Band& band, std::int64_t most);
 
 /// A rectangle along the grid's axes that holds every cell of the map's bounds that the zone touches in the band,
-/// whatever the zone: all there are where its place cannot be told.
+/// whatever the zone, with its margin: all there are where its place cannot be told.
 [[nodiscard]] CellRectangle rectangle_around(const Zone& zone, double resolution, const Band& band);
 
-/// Whether both take the same cells: the same kind, volume and place.
+/// Whether both take the same cells in the same way: the same kind, volume, place, margin and cost.
 [[nodiscard]] bool same_ground(const Zone& a, const Zone& b);
 
 }  // namespace concord

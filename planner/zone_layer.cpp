@@ -9,7 +9,7 @@ namespace concord {
 
 void ZoneLayer::Dirty::add(const Drawn& drawn) {
   for (const ColumnPlane& plane : drawn.cells.columns) columns.push_back(plane.column);
-  anywhere |= drawn.is_no_go() && !drawn.is_fine;
+  anywhere |= !drawn.is(Zone::Kind::kAllowContact) && !drawn.is_fine;
 }
 
 /// Not drawn yet: what is drawn is paid for when it is known to be heeded.
@@ -63,13 +63,60 @@ ZoneLayer::Change ZoneLayer::set(std::span<const Zone> zones) {
   zones_ = match({zones.begin(), zones.end()}, dirty);
   std::int64_t left = kMaxCells;
   rectangles_.clear();
-  has_no_go_ = has_contact_ = false;
+  large_.clear();
+  const bool had_corridors = has_corridors_;
+  has_no_go_ = has_contact_ = has_costly_ = has_corridors_ = false;
   for (Drawn& zone : zones_) {
     settle(zone, left, dirty);
-    (zone.is_no_go() ? has_no_go_ : has_contact_) = true;
-    if (zone.is_no_go() && !zone.is_fine) rectangles_.push_back(zone.around);
+    has_no_go_ |= zone.is_no_go();
+    has_contact_ |= zone.is(Zone::Kind::kAllowContact);
+    has_costly_ |= zone.is(Zone::Kind::kCostly);
+    has_corridors_ |= zone.is(Zone::Kind::kCorridor);
+    if (zone.is_fine || zone.is(Zone::Kind::kAllowContact)) continue;
+    zone.is_no_go() ? rectangles_.push_back(zone.around) : large_.push_back(zone);
   }
+  // All that lies beside them.
+  dirty.anywhere |= had_corridors != has_corridors_;
   return {recompute(std::move(dirty.columns)), dirty.anywhere};
+}
+
+/// The dearest counts.
+void ZoneLayer::Price::add(const Drawn& zone, BrickIndex column) {
+  if (zone.is(Zone::Kind::kCorridor)) corridor |= zone.plane(column);
+  if (!zone.is(Zone::Kind::kCostly)) return;
+  for (std::uint64_t cells = zone.plane(column); cells != 0; cells &= cells - 1) {
+    std::uint8_t& cost = costly[static_cast<std::size_t>(std::countr_zero(cells))];
+    cost = std::max(cost, static_cast<std::uint8_t>(zone.zone.cost));
+  }
+}
+
+/// Adds to the change where cells cost more or less than before.
+void ZoneLayer::take_prices(const std::vector<const Drawn*>& near, ColumnChange& change) {
+  Price now;
+  for (const Drawn* zone : near) now.add(*zone, change.column);
+  const auto it = prices_.find(change.column);
+  const Price was = it != prices_.end() ? it->second : Price{};
+  if (now == was) return;
+  for (int local = 0; local < 64; ++local) {
+    const int more = int{now.at(local, has_corridors_)} - was.at(local, has_corridors_);
+    if (more > 0) change.blocked |= std::uint64_t{1} << local;
+    if (more < 0) change.freed |= std::uint64_t{1} << local;
+  }
+  if (now == Price{}) {
+    prices_.erase(change.column);
+  } else {
+    prices_[change.column] = now;
+  }
+}
+
+ColumnCosts ZoneLayer::costs(BrickIndex column) const {
+  ColumnCosts costs{};
+  if (!has_costs()) return costs;
+  Price price;
+  if (const auto it = prices_.find(column); it != prices_.end()) price = it->second;
+  for (const Drawn& zone : large_) price.add(zone, column);
+  for (int local = 0; local < 64; ++local) costs[static_cast<std::size_t>(local)] = price.at(local, has_corridors_);
+  return costs;
 }
 
 std::vector<ColumnChange> ZoneLayer::recompute(std::vector<BrickIndex> dirty) {
@@ -89,7 +136,8 @@ std::vector<ColumnChange> ZoneLayer::recompute(std::vector<BrickIndex> dirty) {
     Planes now;
     for (const Drawn* zone : near) {
       if (zone->cells.bounds.plane(column) == 0) continue;
-      (zone->is_no_go() ? now.no_go : now.contact) |= zone->cells.plane(column);
+      if (zone->is_no_go()) now.no_go |= zone->cells.plane(column);
+      if (zone->is(Zone::Kind::kAllowContact)) now.contact |= zone->cells.plane(column);
     }
     Planes was;
     if (const auto it = planes_.find(column); it != planes_.end()) {
@@ -100,8 +148,9 @@ std::vector<ColumnChange> ZoneLayer::recompute(std::vector<BrickIndex> dirty) {
     }
     const std::uint64_t was_open = was.contact & ~was.no_go;
     const std::uint64_t is_open = now.contact & ~now.no_go;
-    const ColumnChange change{column, (now.no_go & ~was.no_go) | (was_open & ~is_open),
-                              (was.no_go & ~now.no_go) | (is_open & ~was_open)};
+    ColumnChange change{column, (now.no_go & ~was.no_go) | (was_open & ~is_open),
+                        (was.no_go & ~now.no_go) | (is_open & ~was_open)};
+    take_prices(near, change);
     if ((change.blocked | change.freed) != 0) changes.push_back(change);
   }
   return changes;

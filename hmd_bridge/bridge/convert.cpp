@@ -64,9 +64,8 @@ Pose to_hmd(const Transform& T) {
 Volume to_hmd(const concord::Volume& volume) { return std::visit(VolumeToHmd{}, volume); }
 
 Zone to_hmd(const concord::Zone& zone) {
-  return {zone.name,           zone.kind == concord::Zone::Kind::kNoGo ? ZoneKind::kNoGo : ZoneKind::kAllowContact,
-          to_hmd(zone.volume), to_hmd(zone.T_map_zone),
-          zone.author,         zone.revision};
+  return {zone.name,    static_cast<ZoneKind>(zone.kind), to_hmd(zone.volume), to_hmd(zone.T_map_zone), zone.author,
+          zone.revision};
 }
 
 Lease to_hmd(const concord::Lease& lease) {
@@ -115,9 +114,13 @@ Result<concord::Volume> from_hmd(const Volume& volume) {
   return out;
 }
 
-concord::Zone::Kind from_hmd(ZoneKind kind) {
-  return kind == ZoneKind::kNoGo ? concord::Zone::Kind::kNoGo : concord::Zone::Kind::kAllowContact;
-}
+static_assert(static_cast<int>(ZoneKind::kNoGo) == static_cast<int>(concord::Zone::Kind::kNoGo) &&
+                  static_cast<int>(ZoneKind::kAllowContact) == static_cast<int>(concord::Zone::Kind::kAllowContact) &&
+                  static_cast<int>(ZoneKind::kCostly) == static_cast<int>(concord::Zone::Kind::kCostly) &&
+                  static_cast<int>(ZoneKind::kCorridor) == static_cast<int>(concord::Zone::Kind::kCorridor),
+              "kinds of zones are passed on by number");
+
+concord::Zone::Kind from_hmd(ZoneKind kind) { return static_cast<concord::Zone::Kind>(kind); }
 
 static_assert(static_cast<int>(OperationKind::kWeight) == static_cast<int>(concord::Operation::Kind::kWeight),
               "the schema names kinds of operations in the order of core/corrections.hpp");

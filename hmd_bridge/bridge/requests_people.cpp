@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <tuple>
 
 #include "bridge/requests.hpp"
 
@@ -32,6 +33,9 @@ Granted<concord::EditRequest> edit_of(Desk& desk, const Ask& ask, const EditRequ
   return edit;
 }
 
+/// Four times as much as elsewhere.
+constexpr int kCostOfCostly = 3;
+
 Granted<concord::ZoneRequest> zone_of(Desk& desk, const Ask& ask, const std::string& name, ZoneKind kind, Frame frame,
                                       const Volume& volume) {
   const auto where = desk.place(ask, frame);
@@ -44,6 +48,11 @@ Granted<concord::ZoneRequest> zone_of(Desk& desk, const Ask& ask, const std::str
   zone.author = desk.author(ask);
   zone.name = name;
   zone.kind = from_hmd(kind);
+  if (zone.kind == concord::Zone::Kind::kCostly) zone.cost = kCostOfCostly;
+  // What headsets cannot say stays as it was.
+  for (const concord::Zone& known : desk.world.zones()) {
+    if (known.name == name && known.kind == zone.kind) std::tie(zone.margin, zone.cost) = {known.margin, known.cost};
+  }
   zone.volume = std::move(*drawn);
   zone.frame = where->frame;
   zone.utime = desk.now();

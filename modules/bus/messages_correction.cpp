@@ -168,6 +168,8 @@ Bytes encode(const ZoneRequest& value) {
   out.name = value.name;
   out.kind = wire::to_wire(value.kind);
   out.volume = wire::to_wire(value.volume);
+  out.margin = value.margin;
+  out.cost = value.cost;
   put_frame(value.frame, out);
   out.base_revision = value.base_revision;
   return wire::to_bytes(out);
@@ -175,8 +177,8 @@ Bytes encode(const ZoneRequest& value) {
 
 template <>
 Decoded<ZoneRequest> decode<ZoneRequest>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {
-      record(wire::kAsker), fixed(1), text(wire::kTitleLength), fixed(1), wire::kShape, record(kFrame), fixed(8)};
+  static constexpr WireField kLayout[] = {record(wire::kAsker), fixed(1),     text(wire::kTitleLength), fixed(1),
+                                          wire::kShape,         fixed(8 + 4), record(kFrame),           fixed(8)};
   const auto in = wire::read_asked<zone_request_t>(bytes, kLayout);
   if (!in) return tl::unexpected(in.error());
   auto out = wire::asked_by<ZoneRequest>(*in);
@@ -187,6 +189,8 @@ Decoded<ZoneRequest> decode<ZoneRequest>(std::span<const std::uint8_t> bytes) {
   if (in->op != zone_request_t::DELETE) {
     out.take(&ZoneRequest::kind, wire::zone_kind(in->kind));
     out.take(&ZoneRequest::volume, wire::volume_from_wire(in->volume));
+    out.take(&ZoneRequest::margin, wire::margin_of(*in));
+    out.take(&ZoneRequest::cost, Result<int>(in->cost));
   }
   out.take(&ZoneRequest::frame, frame_of(*in));
   out.take(&ZoneRequest::base_revision, base_of(in->base_revision));

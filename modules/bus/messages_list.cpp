@@ -28,6 +28,8 @@ zone_t to_wire(const Zone& zone) {
   out.name = zone.name;
   out.kind = wire::to_wire(zone.kind);
   out.volume = wire::to_wire(zone.volume);
+  out.margin = zone.margin;
+  out.cost = zone.cost;
   out.T_map_zone = wire::to_wire(zone.T_map_zone);
   out.author = zone.author;
   out.utime = zone.utime;
@@ -40,6 +42,8 @@ Decoded<Zone> from_wire(const zone_t& in) {
   out.take(&Zone::name, wire::kept_title_of(in.name));
   out.take(&Zone::kind, wire::zone_kind(in.kind));
   out.take(&Zone::volume, wire::volume_from_wire(in.volume));
+  out.take(&Zone::margin, wire::margin_of(in));
+  out.take(&Zone::cost, Result<int>(in.cost));
   out.take(&Zone::T_map_zone, wire::from_wire(in.T_map_zone));
   out.take(&Zone::author, line(in.author));
   out.take(&Zone::utime, Result<std::int64_t>(in.utime));
@@ -68,8 +72,9 @@ Decoded<Lease> from_wire(const lease_t& in) {
   return out.done();
 }
 
-constexpr WireField kZone[] = {text(wire::kTitleLength), fixed(1),    wire::kVolume, fixed(wire::kTransformBytes),
-                               text(wire::kIdLength),    fixed(8 + 8)};
+constexpr WireField kZone[] = {
+    text(wire::kTitleLength), fixed(1),    wire::kVolume, fixed(8 + 4 + wire::kTransformBytes),
+    text(wire::kIdLength),    fixed(8 + 8)};
 constexpr WireField kLease[] = {text(wire::kIdLength), text(wire::kIdLength), wire::kVolume,
                                 fixed(wire::kTransformBytes + 8)};
 

@@ -25,9 +25,24 @@ bool is_finite(const Path& path) {
   const auto fine = [](const PathPoint& point) {
     return std::isfinite(point.yaw) && std::isfinite(point.clearance) && std::isfinite(point.eta);
   };
-  return wire::all_finite(path.points) && std::all_of(path.details.begin(), path.details.end(), fine) &&
-         std::isfinite(path.length) && std::isfinite(path.least_clearance) && std::isfinite(path.radius) &&
-         std::isfinite(path.zmin) && std::isfinite(path.zmax) && (!path.nearest || path.nearest->allFinite());
+  return wire::all_finite(path.points) && wire::all_finite(path.footprint) && std::isfinite(path.turn_radius) &&
+         std::all_of(path.details.begin(), path.details.end(), fine) && std::isfinite(path.length) &&
+         std::isfinite(path.least_clearance) && std::isfinite(path.radius) && std::isfinite(path.zmin) &&
+         std::isfinite(path.zmax) && (!path.nearest || path.nearest->allFinite());
+}
+
+void put_corners(const std::vector<Eigen::Vector2d>& corners, auto& out) {
+  out.corner_count = static_cast<std::int32_t>(corners.size());
+  for (const Eigen::Vector2d& p : corners) {
+    out.corner_x.push_back(p.x());
+    out.corner_y.push_back(p.y());
+  }
+}
+
+std::vector<Eigen::Vector2d> corners_of(const auto& in) {
+  std::vector<Eigen::Vector2d> corners;
+  for (std::size_t i = 0; i < in.corner_x.size(); ++i) corners.emplace_back(in.corner_x[i], in.corner_y[i]);
+  return corners;
 }
 
 }  // namespace
@@ -44,7 +59,12 @@ Bytes encode(const PathRequest& value, std::int64_t utime) {
     out.start[i] = start[i];
     out.goal[i] = value.goal[i];
   }
+  out.start_yaw = value.start_yaw;
+  out.has_goal_yaw = value.goal_yaw.has_value();
+  out.goal_yaw = value.goal_yaw.value_or(0.0);
   out.radius = value.radius;
+  put_corners(value.footprint, out);
+  out.turn_radius = value.turn_radius;
   out.keep_active = value.keep_active;
   out.count = static_cast<std::int32_t>(value.waypoints.size());
   for (const Eigen::Vector2d& p : value.waypoints) {
@@ -60,7 +80,11 @@ Decoded<PathRequest> decode<PathRequest>(std::span<const std::uint8_t> bytes) {
                                           text(wire::kIdLength),
                                           fixed(1),
                                           text(wire::kNameLength),
-                                          fixed(1 + 16 + 16 + 8 + 1),
+                                          fixed(1 + 16 + 8 + 16 + 1 + 8 + 8),
+                                          count(kMaxFootprintCorners),
+                                          array(8),
+                                          array(8),
+                                          fixed(8 + 1),
                                           count(kMaxWaypoints),
                                           array(8),
                                           array(8)};
@@ -77,7 +101,11 @@ Decoded<PathRequest> decode<PathRequest>(std::span<const std::uint8_t> bytes) {
   if (in->op != path_request_t::PLAN) return bad(Code::kBadRequest, "op must be PLAN or CANCEL", out.id);
   out.goal = {in->goal[0], in->goal[1]};
   out.radius = in->radius;
+  out.footprint = corners_of(*in);
+  out.turn_radius = in->turn_radius;
   out.keep_active = in->keep_active != 0;
+  if (in->has_goal_yaw) out.goal_yaw = in->goal_yaw;
+  if (in->has_start) out.start_yaw = in->start_yaw;
   if (in->has_start) out.start = Eigen::Vector2d(in->start[0], in->start[1]);
   for (std::size_t i = 0; i < in->waypoint_x.size(); ++i) {
     out.waypoints.emplace_back(in->waypoint_x[i], in->waypoint_y[i]);
@@ -86,8 +114,15 @@ Decoded<PathRequest> decode<PathRequest>(std::span<const std::uint8_t> bytes) {
       !std::all_of(out.waypoints.begin(), out.waypoints.end(), is_near)) {
     return bad(Code::kNotFinite, "start, waypoints and goal must be finite, in metres, within 10 km", out.id);
   }
+  if (!std::isfinite(out.start_yaw) || !std::isfinite(out.goal_yaw.value_or(0)) ||
+      !std::all_of(out.footprint.begin(), out.footprint.end(), is_near)) {
+    return bad(Code::kNotFinite, "yaws and corners must be finite", out.id);
+  }
   if (!(out.radius >= 0 && out.radius <= 10)) {
     return bad(Code::kBadRequest, "radius must lie between 0 and 10 m", out.id);
+  }
+  if (!(out.turn_radius >= 0 && out.turn_radius <= 100)) {
+    return bad(Code::kBadRequest, "turn_radius must lie between 0 and 100 m", out.id);
   }
   return out;
 }
@@ -140,6 +175,8 @@ Bytes encode(const Path& value) {
   out.zones = value.zones;
   if (out.zones.size() > kMaxZonesOfAPath) out.zones.resize(kMaxZonesOfAPath);
   out.zone_count = static_cast<std::int32_t>(out.zones.size());
+  put_corners(value.footprint, out);
+  out.turn_radius = value.turn_radius;
   wire::put_points(value.points, out);
   for (std::size_t i = 0; i < value.points.size(); ++i) {
     const PathPoint point = i < value.details.size() ? value.details[i] : PathPoint{};
@@ -164,6 +201,10 @@ Decoded<Path> decode<Path>(std::span<const std::uint8_t> bytes) {
                                           fixed(8 + 8 + 8 + 8 + 1 + 5 * 8 + 4 + 1 + 16),
                                           count(kMaxZonesOfAPath),
                                           texts(kTitleBytes),
+                                          count(kMaxFootprintCorners),
+                                          array(8),
+                                          array(8),
+                                          fixed(8),
                                           count(kMaxPathPoints),
                                           array(3 * 8),
                                           array(2 * 8),
@@ -189,6 +230,8 @@ Decoded<Path> decode<Path>(std::span<const std::uint8_t> bytes) {
   out.failed_leg = in->failed_leg;
   if (in->has_nearest) out.nearest = Eigen::Vector2d(in->nearest[0], in->nearest[1]);
   out.zones = in->zones;
+  out.footprint = corners_of(*in);
+  out.turn_radius = in->turn_radius;
   out.map_revision = in->map_revision;
   out.plan_number = in->plan_number;
   out.active = in->active != 0;

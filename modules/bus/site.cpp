@@ -108,6 +108,8 @@ AgentConfig read_agent(const YAML::Node& node, const std::string& name, AgentCon
   section.read("weight", agent.weight, 1, 1000);
   section.read("radius", agent.radius, 0.0, 10.0);
   section.read("speed", agent.speed, 0.01, 100.0);
+  section.read("footprint", agent.footprint);
+  section.read("turn_radius", agent.turn_radius, 0.0, 100.0);
   read_band(section, name, agent);
   section.done();
   return agent;
@@ -250,6 +252,10 @@ std::string to_yaml(const Site& site) {
     root["agents"][id]["weight"] = agent.weight;
     root["agents"][id]["radius"] = agent.radius;
     root["agents"][id]["speed"] = agent.speed;
+    if (!agent.footprint.empty()) {
+      root["agents"][id]["footprint"] = agent.footprint;
+      root["agents"][id]["turn_radius"] = agent.turn_radius;
+    }
     if (!agent.band) return;
     root["agents"][id]["zmin"] = agent.band->first;
     root["agents"][id]["zmax"] = agent.band->second;

@@ -19,6 +19,9 @@ struct AgentConfig {
   int weight = 1;       ///< 1 to 1000
   double radius = 0.3;  ///< metres; as a robot on the grid
   double speed = 0.5;   ///< m/s along a path
+  /// Its outline, "LENGTHxWIDTH" or "x y, x y, x y, ...", robot frame, metres; the planner reads it. Empty: a disc.
+  std::string footprint;
+  double turn_radius = 0.0;  ///< metres, with a footprint; 0: it turns in place
   /// Heights that it takes up, map z, metres; absent: the planner's band.
   std::optional<std::pair<double, double>> band;
 };

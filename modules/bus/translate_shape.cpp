@@ -156,6 +156,8 @@ std::int8_t to_wire(Zone::Kind kind) {
   switch (kind) {
     case Zone::Kind::kNoGo: return zone_t::NO_GO;
     case Zone::Kind::kAllowContact: return zone_t::ALLOW_CONTACT;
+    case Zone::Kind::kCostly: return zone_t::COSTLY;
+    case Zone::Kind::kCorridor: return zone_t::CORRIDOR;
   }
   return 0;
 }
@@ -164,7 +166,9 @@ Result<Zone::Kind> zone_kind(std::int8_t kind) {
   switch (kind) {
     case zone_t::NO_GO: return Zone::Kind::kNoGo;
     case zone_t::ALLOW_CONTACT: return Zone::Kind::kAllowContact;
-    default: return refuse(Code::kBadRequest, "kind must be NO_GO or ALLOW_CONTACT");
+    case zone_t::COSTLY: return Zone::Kind::kCostly;
+    case zone_t::CORRIDOR: return Zone::Kind::kCorridor;
+    default: return refuse(Code::kBadRequest, "kind must be NO_GO, ALLOW_CONTACT, COSTLY or CORRIDOR");
   }
 }
 

@@ -38,5 +38,12 @@ inline constexpr std::int64_t kTitleLength = kMaxTitleBytes;  ///< see is_title
 [[nodiscard]] Result<std::string> kept_title_of(const std::string& name);
 [[nodiscard]] std::int8_t to_wire(Zone::Kind kind);
 [[nodiscard]] Result<Zone::Kind> zone_kind(std::int8_t kind);
+/// Of a zone or what asks for one, checked together with its cost.
+template <class Message>
+[[nodiscard]] Result<double> margin_of(const Message& in) {
+  return zone_kind(in.kind).and_then([&](Zone::Kind kind) { return check_terms(kind, in.margin, in.cost); }).map([&] {
+    return in.margin;
+  });
+}
 
 }  // namespace concord::wire

@@ -75,6 +75,12 @@ std::string subtitle_of(const DemoReport& report) {
   return text;
 }
 
+nlohmann::json driven_json(const DemoReport& report) {
+  nlohmann::json points = nlohmann::json::array();
+  for (const Eigen::Vector2d& p : report.driven) points.push_back({p.x(), p.y()});
+  return points;
+}
+
 std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -170,6 +176,8 @@ nlohmann::json to_json(const DemoReport& report) {
           {"path_before", path_or_null(report.path_before)},
           {"path_after", path_or_null(report.path_after)},
           {"replanned", or_null(report.replanned)},
+          {"arrived", or_null(report.arrived)},
+          {"driven", driven_json(report)},
           {"mapping_seconds",
            {{"one_agent", or_null(report.one_agent_seconds)}, {"all_agents", or_null(report.all_agents_seconds)}}},
           {"bytes_sent", report.bytes_sent()},
@@ -192,6 +200,7 @@ Overview to_overview(const DemoReport& report) {
   if (report.path_after) overview.after = to_route(*report.path_after);
   overview.start = report.start;
   overview.goal = report.goal;
+  overview.driven = report.driven;
   overview.features = features_of(report);
   overview.numbers = numbers_of(report);
   return overview;

@@ -34,7 +34,9 @@ struct DemoReport {
   std::string author;
   std::optional<MapScore> robot, merged, edited;  ///< one robot alone, all merged, and after the edit
   std::optional<Path> path_before, path_after;
-  std::optional<bool> replanned;  ///< whether the active path was, by itself, when the edit crossed it
+  std::optional<bool> arrived;          ///< whether the robot came to the goal, where it can drive
+  std::vector<Eigen::Vector2d> driven;  ///< from the start, where it was: map frame, half a metre apart
+  std::optional<bool> replanned;        ///< whether the active path was, by itself, when the edit crossed it
   /// Simulated seconds until nine tenths of the surface in the merged map (its recall before the edit) were shown by
   /// the first robot's own submap, and by the merged map; absent where they never were.
   std::optional<double> one_agent_seconds, all_agents_seconds;

@@ -17,7 +17,6 @@ constexpr double kListen = 1.3;  // seconds in which a process that runs says it
 constexpr double kStart = 30.0;  // seconds, as all below
 constexpr double kMapping = 600.0;
 constexpr double kSync = 120.0;
-constexpr double kReplan = 5.0;
 constexpr double kProgress = 2.0;
 constexpr double kAgain = 0.2;
 constexpr double kCoarse = 0.5;   // metres; of points that nobody looks at
@@ -43,9 +42,9 @@ DemoRun::DemoRun(const DemoOptions& options, const Common& common)
 
 Outcome DemoRun::run() {
   end_on_signals();
-  for (const auto step :
-       {&DemoRun::prepare, &DemoRun::start, &DemoRun::send, &DemoRun::follow_mapping, &DemoRun::plan_before,
-        &DemoRun::edit, &DemoRun::plan_after, &DemoRun::collect, &DemoRun::tell}) {
+  for (const auto step : {&DemoRun::prepare, &DemoRun::start, &DemoRun::send, &DemoRun::follow_mapping,
+                          &DemoRun::drive_to_start, &DemoRun::plan_before, &DemoRun::edit, &DemoRun::plan_after,
+                          &DemoRun::arrive, &DemoRun::collect, &DemoRun::tell}) {
     const Step done = (this->*step)();
     if (end_requested()) return fail(Exit::kIncomplete, "INTERRUPTED", "ended before the report was written");
     if (!done) return tl::unexpected(done.error());
@@ -221,72 +220,6 @@ DemoRun::Step DemoRun::settle(const std::string& name) {
   const auto saved = save(name);  // it folds what is left, and says which revision that is
   if (!saved) return tl::unexpected(saved.error());
   return wait_for("the map", kSync, [&] { return copies_->map.synced() && copies_->map.revision() >= *saved; });
-}
-
-tl::expected<Path, Failure> DemoRun::plan() {
-  const double end = now() + kSync;
-  for (;;) {
-    PathRequest request;
-    request.id = live_->new_id();
-    request.robot = scene_.agents.front().id;
-    request.start = *scene_.start;
-    request.goal = *scene_.goal;
-    request.keep_active = true;
-    auto path = request_path(*live_, request);
-    if (!path) return path;
-    // The planner copies the map as we do; it may be a moment behind.
-    if (path->map_revision >= copies_->map.revision() || now() > end || end_requested()) {
-      active_path_ = request.id;
-      return path;
-    }
-    live_->wait(kAgain, end_requested);
-  }
-}
-
-DemoRun::Step DemoRun::plan_before() {
-  if (!scene_.start) return {};
-  const double since = now();
-  auto path = plan();
-  if (!path) return tl::unexpected(path.error());
-  took("path_before", since);
-  say("before the edit: " + to_words(*path));
-  report_.path_before = std::move(*path);
-  return {};
-}
-
-DemoRun::Step DemoRun::edit() {
-  before_edit_ = copies_->map.map();
-  if (scene_.edit.empty()) return {};
-  const double since = now();
-  if (const Step added = person_->add(scene_.edit, scene_.resolution); !added) return added;
-  const auto shown = wait_for("the edit in the map", kSync, [this] {
-    return std::ranges::all_of(scene_.edit, [&](const VoxelIndex& v) {
-      const LogOdds value = copies_->map.map().at(v);
-      return is_known(value) && is_occupied(value);
-    });
-  });
-  if (!shown) return shown;
-  took("edit", since);
-  say("a person pinned " + format_count(static_cast<std::int64_t>(scene_.edit.size())) + " voxels");
-  return {};
-}
-
-DemoRun::Step DemoRun::plan_after() {
-  if (!scene_.start || scene_.edit.empty()) return {};
-  const double since = now();
-  const std::int64_t first = report_.path_before->plan_number, revision = copies_->map.revision();
-  const auto kept = [&] {
-    const Path* latest = live_->path_for(active_path_);
-    return latest != nullptr && latest->map_revision >= revision ? latest : nullptr;
-  };
-  const bool by_itself = live_->wait(kReplan, [&] { return kept() != nullptr; });
-  auto path = by_itself ? tl::expected<Path, Failure>(*kept()) : plan();
-  if (!path) return tl::unexpected(path.error());
-  if (report_.path_before->status == "OK") report_.replanned = by_itself && path->plan_number > first;
-  took("path_after", since);
-  say("after the edit: " + to_words(*path));
-  report_.path_after = std::move(*path);
-  return {};
 }
 
 DemoRun::Step DemoRun::check(const std::string& what) const {

@@ -36,9 +36,11 @@ class DemoRun {
   Step enter_bridge();
   Step send();
   Step follow_mapping();
+  Step drive_to_start();
   Step plan_before();
   Step edit();
   Step plan_after();
+  Step arrive();
   Step collect();
   Step tell();
 
@@ -51,7 +53,9 @@ class DemoRun {
   /// Until ingest has taken in all that it was sent, and merge that.
   [[nodiscard]] Step all_taken_in();
   [[nodiscard]] tl::expected<std::int64_t, Failure> save(const std::string& name);
-  [[nodiscard]] tl::expected<Path, Failure> plan();
+  [[nodiscard]] tl::expected<Path, Failure> plan(const Eigen::Vector2d& goal);
+  /// Until the robot is there, or has not come nearer for long.
+  [[nodiscard]] bool comes_to(const Eigen::Vector2d& goal);
   void note_moment();
   void say_progress() const;
   void score();
@@ -72,6 +76,7 @@ class DemoRun {
   std::unique_ptr<DemoWatch> watch_;
   std::unique_ptr<DemoPerson> person_;
   std::string active_path_;  ///< the request that is kept up to date
+  std::size_t set_out_ = 0;  ///< of the robot's track, where it was at the start
   std::vector<MappingMoment> moments_;
   BrickMap before_edit_;
   DemoReport report_;

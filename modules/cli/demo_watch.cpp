@@ -31,7 +31,16 @@ DemoWatch::DemoWatch(Live& live, const DemoScene& scene) {
     note_done(s);
     statuses_[s.process] = std::move(s);
   });
+  live.hear<MapPose>("out/pose/.*", [this](const std::string&, const MapPose& pose) {
+    constexpr double kApart = 0.5;
+    const Eigen::Vector2d p = pose.T_map_base.translation().head<2>();
+    places_[pose.agent] = p;
+    const auto track = tracks_.find(pose.agent);
+    if (track == tracks_.end()) return;
+    if (track->second.empty() || (track->second.back() - p).norm() >= kApart) track->second.push_back(p);
+  });
   for (const DemoAgent& agent : scene.agents) {
+    tracks_[agent.id];
     Streams& streams = streams_[agent.id];
     live.hear<BrickDigest>(StreamChannels("in/" + agent.id).digest,
                            [&streams](const std::string&, BrickDigest d) { streams.in = std::move(d); });
@@ -71,6 +80,11 @@ void DemoWatch::note_aligned(const std::string& id, const Transform& T_map_agent
     state.aligned = true;
     state.T_map_agent = T_map_agent;
   }
+}
+
+std::optional<Eigen::Vector2d> DemoWatch::place(const std::string& id) const {
+  const auto it = places_.find(id);
+  return it != places_.end() ? std::optional(it->second) : std::nullopt;
 }
 
 std::int64_t DemoWatch::progress(const DemoAgent& agent) const {

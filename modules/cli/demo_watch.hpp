@@ -30,6 +30,10 @@ class DemoWatch {
   /// An agent that is a map file begins to send. @pre agent.file
   void publish(Live& live, const DemoAgent& agent);
 
+  /// Where the agent is in the map, and has been since it was first heard of, half a metre apart: map frame, metres.
+  [[nodiscard]] std::optional<Eigen::Vector2d> place(const std::string& id) const;
+  [[nodiscard]] const std::vector<Eigen::Vector2d>& track(const std::string& id) const { return tracks_.at(id); }
+
   /// The process has said that it runs.
   [[nodiscard]] bool runs(const std::string& process) const { return statuses_.contains(process); }
   /// Any process that runs.
@@ -70,6 +74,8 @@ class DemoWatch {
   std::map<std::string, Streams> streams_;
   std::map<std::string, std::int64_t> done_;  ///< when a simulated agent first said that it had sent all
   std::vector<AgentState> agents_;
+  std::map<std::string, Eigen::Vector2d> places_;
+  std::map<std::string, std::vector<Eigen::Vector2d>> tracks_;  ///< of all agents of the scene
   std::map<std::string, std::unique_ptr<PublishedMap>> published_;
 };
 

@@ -61,6 +61,14 @@ const char* kind_of(const Volume& volume) {
   return std::holds_alternative<Prism>(volume) ? "prism" : "oriented box";
 }
 
-const char* name(Zone::Kind kind) { return kind == Zone::Kind::kNoGo ? "no-go" : "allow-contact"; }
+const char* name(Zone::Kind kind) {
+  switch (kind) {
+    case Zone::Kind::kNoGo: return "no-go";
+    case Zone::Kind::kAllowContact: return "allow-contact";
+    case Zone::Kind::kCostly: return "costly";
+    case Zone::Kind::kCorridor: return "corridor";
+  }
+  return "";
+}
 
 }  // namespace concord

@@ -266,6 +266,7 @@ double draw_panel(Page& page, const Overview& overview, const MapArea& area, boo
     };
     if (overview.before) tell(*overview.before, kRed, true, overview.edit.empty() ? "path" : "before the edit");
     if (overview.after) tell(*overview.after, kGreen, false, overview.before ? "after the edit" : "path");
+    if (!overview.driven.empty()) panel.remark("dots: where the robot was on its way");
   }
   if (!overview.features.empty()) {
     panel.section("FOUND");
@@ -297,6 +298,10 @@ Result<OverviewFrame> write_overview(const Overview& overview, const std::filesy
   draw_edit(page, area, overview.edit);
   if (overview.before) draw_route(page, area, *overview.before, kRed, true);
   if (overview.after) draw_route(page, area, *overview.after, kGreen, false);
+  for (const Eigen::Vector2d& p : overview.driven) {
+    page.circle(area.frame.pixel_of(p), 5);
+    page.fill(kInk, 0.9);
+  }
   if (overview.start) draw_marker(page, area, *overview.start, "A");
   if (overview.goal) draw_marker(page, area, *overview.goal, "B");
   draw_scale_bar(page, area);

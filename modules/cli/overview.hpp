@@ -44,6 +44,7 @@ struct Overview {
   std::vector<VoxelIndex> edit;         ///< voxels that a person pinned
   std::optional<Route> before, after;   ///< the same request before and after the edit
   std::optional<Eigen::Vector2d> start, goal;
+  std::vector<Eigen::Vector2d> driven;  ///< where a robot was on its way, a mark for each
   std::vector<Feature> features;
   std::vector<std::pair<std::string, std::string>> numbers;  ///< name and value, as they are printed
 };

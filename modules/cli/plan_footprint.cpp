@@ -109,7 +109,7 @@ Outcome plan_footprint(const FootprintOptions& options, const Ground2D& ground, 
   auto asked = parse(options);
   if (!asked) return fail(asked.error());
   const Clock::time_point begin = Clock::now();
-  PosePlanner planner(ground.grid, no_zones(), asked->footprint, options.turn_radius);
+  PosePlanner planner(ground.grid, {asked->footprint, options.turn_radius});
   planner.prepare();
   const Clock::time_point prepared = Clock::now();
   const Pose from{asked->from.p - ground.origin, asked->from.yaw}, to{asked->to.p - ground.origin, asked->to.yaw};

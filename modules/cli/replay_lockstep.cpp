@@ -24,7 +24,7 @@ class LockstepStack {
         watch_(bus_, site.resolution),
         ingest_(context("ingest", ingest_counters_)),
         merge_(context("merge", merge_counters_)),
-        planner_(context("planner", planner_counters_)) {}
+        planner_(context("planner", planner_counters_), std::launch::deferred) {}
 
   void hear(const LogEvent& event) {
     bus_.advance_to(event.utime);

@@ -6,6 +6,7 @@
 
 #include "cli/extent.hpp"
 #include "cli/list_copy.hpp"
+#include "cli/numbers.hpp"
 #include "cli/report.hpp"
 #include "cli/selection_options.hpp"
 #include "cli/table.hpp"
@@ -16,7 +17,9 @@ namespace {
 
 struct Options {
   std::string op, name, author, id;
-  bool no_go = false, allow_contact = false;
+  bool no_go = false, allow_contact = false, corridor = false;
+  int cost = 0;
+  double margin = 0.0;
   SelectionOptions selection;
   std::int64_t base_revision = kAnyRevision;
 };
@@ -26,6 +29,22 @@ ZoneRequest::Op op_of(const std::string& word) {
   return word == "change" ? ZoneRequest::Op::kChange : ZoneRequest::Op::kDelete;
 }
 
+/// Nothing unless one of them was said.
+std::optional<Zone::Kind> kind_of(const Options& options) {
+  std::optional<Zone::Kind> kind;
+  int said = 0;
+  const auto take = [&](bool is_it, Zone::Kind one) {
+    if (!is_it) return;
+    kind = one;
+    ++said;
+  };
+  take(options.no_go, Zone::Kind::kNoGo);
+  take(options.allow_contact, Zone::Kind::kAllowContact);
+  take(options.cost != 0, Zone::Kind::kCostly);
+  take(options.corridor, Zone::Kind::kCorridor);
+  return said == 1 ? kind : std::nullopt;
+}
+
 /// The part of a request that says what the zone is.
 Result<void> describe(const Options& options, ZoneRequest& request) {
   // Whatever a zone that is there was called, it can be changed and deleted.
@@ -33,12 +52,23 @@ Result<void> describe(const Options& options, ZoneRequest& request) {
     return refuse(Code::kBadName, std::string("a zone's name is ") + kTitleRule);
   }
   if (request.op == ZoneRequest::Op::kDelete) {
-    if (!options.no_go && !options.allow_contact && !is_given(options.selection)) return {};
+    const bool is_kind_given = options.no_go || options.allow_contact || options.corridor || options.cost != 0;
+    if (!is_kind_given && options.margin == 0 && !is_given(options.selection)) return {};
     return refuse(Code::kBadRequest, "zone delete takes the name alone");
   }
-  if (options.no_go == options.allow_contact) return refuse(Code::kBadRequest, "say --no-go or --allow-contact");
-  request.kind = options.no_go ? Zone::Kind::kNoGo : Zone::Kind::kAllowContact;
+  const std::optional<Zone::Kind> kind = kind_of(options);
+  if (!kind) return refuse(Code::kBadRequest, "say one of --no-go, --allow-contact, --costly and --corridor");
+  request.kind = *kind;
+  request.margin = options.margin;
+  request.cost = options.cost;
+  if (const auto fine = check_terms(request.kind, request.margin, request.cost); !fine) return fine;
   return volume_of(options.selection).map([&](Volume volume) { request.volume = std::move(volume); });
+}
+
+std::string terms_of(const Zone& zone) {
+  std::string text = zone.cost != 0 ? "+" + std::to_string(zone.cost) + " a metre" : "";
+  if (zone.margin != 0) text += (text.empty() ? "" : ", ") + format_number(zone.margin, 2) + " m around";
+  return text;
 }
 
 Outcome zone(const Options& options, const Common& common) {
@@ -62,21 +92,24 @@ Outcome zones(const Common& common) {
   const auto list = copy.wait_synced(live);
   if (!list) return tl::unexpected(list.error());
   nlohmann::json array = nlohmann::json::array();
-  std::vector<std::vector<std::string>> rows = {{"name", "kind", "shape", kExtentHeading, "who", "time", "revision"}};
+  std::vector<std::vector<std::string>> rows = {
+      {"name", "kind", "terms", "shape", kExtentHeading, "who", "time", "revision"}};
   for (const Zone& zone : *list) {
     const Box around = extent(zone.volume, zone.T_map_zone);
     array.push_back({{"name", zone.name},
                      {"kind", name(zone.kind)},
+                     {"margin", zone.margin},
+                     {"cost", zone.cost},
                      {"volume", to_json(zone.volume, zone.T_map_zone)},
                      {"bounds", to_json(around)},
                      {"author", zone.author},
                      {"utime", zone.utime},
                      {"time", format_utc_time(zone.utime)},
                      {"revision", zone.revision}});
-    rows.push_back({zone.name, name(zone.kind), kind_of(zone.volume), to_words(around), zone.author,
+    rows.push_back({zone.name, name(zone.kind), terms_of(zone), kind_of(zone.volume), to_words(around), zone.author,
                     format_local_time(zone.utime), std::to_string(zone.revision)});
   }
-  common.print({{"zones", array}}, list->empty() ? "no zones" : format_table(rows, "llllllr"));
+  common.print({{"zones", array}}, list->empty() ? "no zones" : format_table(rows, "lllllllr"));
   return Exit::kDone;
 }
 
@@ -93,6 +126,10 @@ void add_zones(Program& program) {
   command.add_option("name", options->name, "the zone's name")->required();
   auto* no_go = command.add_flag("--no-go", options->no_go, "no robot plans through it; outranks --allow-contact");
   command.add_flag("--allow-contact", options->allow_contact, "robots may touch what is there")->excludes(no_go);
+  command.add_option("--costly", options->cost, "a metre through it costs so many more than one elsewhere, 1 to 15");
+  command.add_flag("--corridor", options->corridor, "ways beside all corridors cost sixteen times as much");
+  command.add_option("--margin", options->margin,
+                     "metres around the volume, level, 0 to 10; of a no-go or costly zone");
   add_volume_options(command, options->selection);
   command
       .add_option("--base-revision", options->base_revision,

@@ -123,6 +123,7 @@ struct CorrectionCheck::Follow {
       return refuse(Code::kTooLarge, "over " + std::to_string(kMaxZones) + " zones");
     }
     if (auto fine = check_volume(zone.volume); !fine) return fine;
+    if (auto fine = check_terms(zone.kind, zone.margin, zone.cost); !fine) return fine;
     if (auto fine = check_transform(zone.T_map_zone); !fine) return fine;
     list.zones_.insert(zone.name);
     return {};

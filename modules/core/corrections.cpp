@@ -50,6 +50,18 @@ struct Summarise {
 
 }  // namespace
 
+Result<void> check_terms(Zone::Kind kind, double margin, int cost) {
+  const bool may_have_margin = kind == Zone::Kind::kNoGo || kind == Zone::Kind::kCostly;
+  if (!(margin >= 0 && margin <= (may_have_margin ? Zone::kMaxMargin : 0.0))) {
+    return refuse(Code::kBadRequest, "the margin of a no-go or costly zone is 0 to 10 m, others have none");
+  }
+  const bool is_costly = kind == Zone::Kind::kCostly;
+  if (is_costly ? cost < 1 || cost > Zone::kMaxCost : cost != 0) {
+    return refuse(Code::kBadRequest, "the cost of a costly zone is 1 to 15, others have none");
+  }
+  return {};
+}
+
 std::optional<Kind> operation_called(std::string_view name) {
   const auto* known = std::ranges::find(kOperationNames, name);
   if (known == kOperationNames.end()) return std::nullopt;

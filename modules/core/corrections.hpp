@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/error.hpp"
 #include "core/lattice.hpp"
 #include "core/shape.hpp"
 #include "core/text.hpp"
@@ -58,7 +59,10 @@ struct UndoRequest {
 
 /// A volume that people fenced off, or opened to contact, for planning. Map data, not a rated safety function.
 struct Zone {
-  enum class Kind { kNoGo, kAllowContact };
+  /// Ways through a costly zone cost more; ways beside all corridors, where there is one, much more.
+  enum class Kind { kNoGo, kAllowContact, kCostly, kCorridor };
+  static constexpr double kMaxMargin = 10.0;
+  static constexpr int kMaxCost = 15;
   std::string name;  ///< is_title when it was made; unique
   Kind kind = Kind::kNoGo;
   Volume volume;
@@ -66,7 +70,12 @@ struct Zone {
   std::string author;         ///< who last changed it
   std::int64_t utime = 0;     ///< when
   std::int64_t revision = 0;  ///< that this led to
+  double margin = 0.0;        ///< metres around the volume, level, that it holds in as well; of no-go and costly zones
+  int cost = 0;               ///< of costly zones: a metre costs so many more than one elsewhere, 1 to kMaxCost
 };
+
+/// Refused (kBadRequest): a margin or cost beyond its bounds, or of a kind of zone that has none.
+[[nodiscard]] Result<void> check_terms(Zone::Kind kind, double margin, int cost);
 
 struct ZoneRequest {
   enum class Op { kAdd, kChange, kDelete };
@@ -79,6 +88,8 @@ struct ZoneRequest {
   WorkFrame frame;
   std::int64_t base_revision = kAnyRevision;  ///< refused if the zone was changed since
   std::int64_t utime = 0;
+  double margin = 0.0;  ///< see Zone; neither is heeded with kDelete
+  int cost = 0;
 };
 
 /// A region that somebody works in; others are refused there until it ends.

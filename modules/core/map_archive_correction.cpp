@@ -12,12 +12,14 @@ namespace concord::archive {
 namespace {
 
 // Numbered here and not by the enums: what was written once stays readable.
-enum class What : std::uint8_t { kEdit = 1, kUndo, kZone, kPlacement, kWeight };
+enum class What : std::uint8_t { kEdit = 1, kUndo, kZone, kPlacement, kWeight, kZoneOnTerms };
 enum class Form : std::uint8_t { kBox = 1, kOrientedBox, kPrism };
 
 constexpr std::array kEditOps{EditRequest::Op::kAdd, EditRequest::Op::kDelete, EditRequest::Op::kMove};
 constexpr std::array kZoneOps{ZoneRequest::Op::kAdd, ZoneRequest::Op::kChange, ZoneRequest::Op::kDelete};
 constexpr std::array kZoneKinds{Zone::Kind::kNoGo, Zone::Kind::kAllowContact};
+constexpr std::array kZoneKindsOnTerms{Zone::Kind::kNoGo, Zone::Kind::kAllowContact, Zone::Kind::kCostly,
+                                       Zone::Kind::kCorridor};
 
 static_assert(kMaxVoxel == 1 << 15, "voxels are written in 16 bits");
 constexpr std::size_t kBoxBytes = 6 * 2;
@@ -151,6 +153,12 @@ Volume read_volume(FieldReader& in) {
 
 void append_what(Bytes& out, What what) { append_le(out, static_cast<std::uint8_t>(what)); }
 
+/// What files of old have no room for; they, and those who read them, know two kinds of zones and nothing more of one.
+bool has_terms(const Zone& zone) {
+  const bool is_old = std::find(kZoneKinds.begin(), kZoneKinds.end(), zone.kind) != kZoneKinds.end();
+  return !is_old || zone.margin != 0 || zone.cost != 0;
+}
+
 struct AppendWhat {
   Bytes& out;
 
@@ -166,11 +174,16 @@ struct AppendWhat {
     append_le(out, static_cast<std::uint8_t>(undo.redo));
   }
   void operator()(const Correction::ZoneChange& change) const {
-    append_what(out, What::kZone);
+    const bool on_terms = has_terms(change.zone);
+    append_what(out, on_terms ? What::kZoneOnTerms : What::kZone);
     append_one_of(out, kZoneOps, change.op);
     append_text(out, change.zone.name);
     if (change.op == ZoneRequest::Op::kDelete) return;
-    append_one_of(out, kZoneKinds, change.zone.kind);
+    append_one_of(out, kZoneKindsOnTerms, change.zone.kind);
+    if (on_terms) {
+      append_real(out, change.zone.margin);
+      append_le(out, static_cast<std::uint8_t>(change.zone.cost));
+    }
     std::visit(AppendVolume{out}, change.zone.volume);
     append_transform(out, change.zone.T_map_zone);
   }
@@ -209,12 +222,16 @@ Correction::Undo read_undo(FieldReader& in) {
 }
 
 /// But for its author, time and revision.
-Correction::ZoneChange read_zone_change(FieldReader& in) {
+Correction::ZoneChange read_zone_change(FieldReader& in, bool on_terms) {
   Correction::ZoneChange change;
   change.op = read_one_of(in, kZoneOps);
   change.zone.name = in.text();
   if (change.op == ZoneRequest::Op::kDelete) return change;
-  change.zone.kind = read_one_of(in, kZoneKinds);
+  change.zone.kind = on_terms ? read_one_of(in, kZoneKindsOnTerms) : read_one_of(in, kZoneKinds);
+  if (on_terms) {
+    change.zone.margin = in.real();
+    change.zone.cost = in.integer<std::uint8_t>();
+  }
   change.zone.volume = read_volume(in);
   change.zone.T_map_zone = read_transform(in);
   return change;
@@ -245,7 +262,8 @@ Result<decltype(Correction::what)> read_what(FieldReader& in, const Room& room) 
       return std::move(*edit);
     }
     case What::kUndo: return read_undo(in);
-    case What::kZone: return read_zone_change(in);
+    case What::kZone: return read_zone_change(in, false);
+    case What::kZoneOnTerms: return read_zone_change(in, true);
     case What::kPlacement: return read_placement(in);
     case What::kWeight: return read_weight(in);
   }

@@ -53,6 +53,7 @@ struct MapRequest {
 };
 
 inline constexpr std::size_t kMaxWaypoints = 1000;
+inline constexpr std::size_t kMaxFootprintCorners = 64;
 
 /// Asks for a path on the grid. With `keep_active` it is replanned whenever a change of the map touches it. `kCancel`
 /// ends what is kept or waits for the robot; nothing else is heeded then.
@@ -66,6 +67,11 @@ struct PathRequest {
   bool keep_active = false;
   std::vector<Eigen::Vector2d> waypoints;  ///< to pass on the way, in this order; at most kMaxWaypoints
   Op op = Op::kPlan;
+  /// Corners, robot frame; none: the site file's, if it has any. What follows is heeded for a footprint alone.
+  std::vector<Eigen::Vector2d> footprint;
+  double turn_radius = 0.0;        ///< with `footprint`; 0: it turns in place
+  double start_yaw = 0.0;          ///< of a given start
+  std::optional<double> goal_yaw;  ///< absent: any
 };
 
 /// Asks for a robot's kept path in an agent's frame.
@@ -96,7 +102,7 @@ struct Answer {
 
 /// What is known of one point of a path.
 struct PathPoint {
-  double yaw = 0.0;        ///< where the path goes on to; at the last point as before it
+  double yaw = 0.0;        ///< where the path goes on to, at the last point as before it; of a footprint its heading
   double clearance = 0.0;  ///< metres to an occupied or unknown cell
   std::int32_t leg = 0;    ///< that ends there or beyond
   double eta = 0.0;        ///< seconds from the start
@@ -121,8 +127,10 @@ struct Path {
   std::string edit_id;             ///< that cut the way off, where it is known
   std::string frame_agent;         ///< in whose frame the points are; empty: the map's
   std::string frame_id;
-  double radius = 0.0;            ///< of the disc that was planned for, metres
-  double zmin = 0.0, zmax = 0.0;  ///< heights of its band
+  double radius = 0.0;                     ///< of the disc that was planned for, or around the footprint, metres
+  std::vector<Eigen::Vector2d> footprint;  ///< that was planned for, robot frame; none: a disc
+  double turn_radius = 0.0;                ///< with it
+  double zmin = 0.0, zmax = 0.0;           ///< heights of its band
   std::int32_t failed_leg = -1;
   std::optional<Eigen::Vector2d> nearest;  ///< what can be reached nearest to a goal that cannot
   std::vector<std::string> zones;          ///< no-go zones near it

@@ -55,6 +55,10 @@ DROP TABLE transforms;
     R"sql(
 UPDATE corrections SET utime = 0 WHERE utime < 0;
 )sql",
+    R"sql(
+ALTER TABLE zones ADD COLUMN margin REAL NOT NULL DEFAULT 0;
+ALTER TABLE zones ADD COLUMN cost INTEGER NOT NULL DEFAULT 0;
+)sql",
 };
 
 }  // namespace concord

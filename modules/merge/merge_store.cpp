@@ -17,8 +17,9 @@ namespace {
 
 using Kind = Operation::Kind;
 
-constexpr const char* kNoGo = "no_go";
-constexpr const char* kAllowContact = "allow_contact";
+/// By its number.
+constexpr std::array kZoneKinds{"no_go", "allow_contact", "costly", "corridor"};
+static_assert(kZoneKinds.size() == static_cast<std::size_t>(Zone::Kind::kCorridor) + 1);
 
 Bytes to_bytes(const std::vector<VoxelIndex>& voxels) {
   Bytes out;
@@ -53,7 +54,7 @@ MergeStore::MergeStore(const std::filesystem::path& file, double resolution)
     : database_(file, kMergeSchema),
       put_correction_(database_.prepare("INSERT INTO corrections VALUES (?,?,?,?,?,?,?)")),
       put_edit_(database_.prepare("INSERT INTO edits VALUES (?,?,?)")),
-      put_zone_(database_.prepare("INSERT INTO zones VALUES (?,?,?,?,?,?,?)")),
+      put_zone_(database_.prepare("INSERT INTO zones VALUES (?,?,?,?,?,?,?,?,?)")),
       put_placement_(database_.prepare("INSERT INTO placements VALUES (?,?,?,?,?,?,?,?)")),
       put_weight_(database_.prepare("INSERT INTO weights VALUES (?,?)")) {
   check_resolution(resolution);
@@ -88,8 +89,9 @@ struct MergeStore::PutDetail {
     if (change.op == ZoneRequest::Op::kDelete) return {};
     const Zone& zone = change.zone;
     const Eigen::Vector3d p = zone.T_map_zone.translation();
-    return store.put_zone_.run(revision, zone.kind == Zone::Kind::kNoGo ? kNoGo : kAllowContact, to_text(zone.volume),
-                               p.x(), p.y(), p.z(), to_text(Eigen::Matrix3d(zone.T_map_zone.linear())));
+    return store.put_zone_.run(revision, kZoneKinds[static_cast<std::size_t>(zone.kind)], to_text(zone.volume), p.x(),
+                               p.y(), p.z(), to_text(Eigen::Matrix3d(zone.T_map_zone.linear())), zone.margin,
+                               std::int64_t{zone.cost});
   }
   Result<void> operator()(const Correction::Placement& placement) const {
     const Eigen::Vector3d p = placement.T_map_agent.translation();
@@ -122,7 +124,7 @@ Result<void> MergeStore::put_one(const Correction& correction) {
 struct MergeStore::Readers {
   explicit Readers(Database& database)
       : edit(database.prepare("SELECT added, deleted FROM edits WHERE revision = ?")),
-        zone(database.prepare("SELECT x, y, z, rotation, kind, volume FROM zones WHERE revision = ?")),
+        zone(database.prepare("SELECT x, y, z, rotation, kind, volume, margin, cost FROM zones WHERE revision = ?")),
         placement(database.prepare(
             "SELECT x, y, z, rotation, frame_id, incarnation, has_layer FROM placements WHERE revision = ?")),
         weight(database.prepare("SELECT weight FROM weights WHERE revision = ?")) {}
@@ -177,12 +179,15 @@ struct MergeStore::Readers {
     if (const auto row = fetch(zone, out); !row) return row;
     const auto T = transform_in(zone);
     const auto volume = volume_from_text(zone.text(5));
-    const std::string kind = zone.text(4);
-    if (!T || !volume || (kind != kNoGo && kind != kAllowContact)) return damaged("zone " + name + " is none");
+    const auto* const kind = std::ranges::find(kZoneKinds, zone.text(4));
+    if (!T || !volume || kind == kZoneKinds.end()) return damaged("zone " + name + " is none");
     Zone there;
     there.name = name;
-    there.kind = kind == kNoGo ? Zone::Kind::kNoGo : Zone::Kind::kAllowContact;
+    there.kind = static_cast<Zone::Kind>(kind - kZoneKinds.begin());
     there.volume = *volume;
+    there.margin = zone.real(6);
+    there.cost = static_cast<int>(zone.integer(7));
+    if (!check_terms(there.kind, there.margin, there.cost)) return damaged("zone " + name + " has no such terms");
     there.T_map_zone = *T;
     out.what = Correction::ZoneChange{op, there};
     return {};

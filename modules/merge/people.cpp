@@ -84,6 +84,8 @@ Result<Correction::ZoneChange> People::check(const ZoneRequest& request, const T
   if (const auto free = leases_.check(bounds, request.author, now); !free) return tl::unexpected(free.error());
   zone.kind = request.kind;
   zone.volume = request.volume;
+  zone.margin = request.margin;
+  zone.cost = request.cost;
   zone.T_map_zone = T_map_frame;
   return Correction::ZoneChange{request.op, std::move(zone)};
 }

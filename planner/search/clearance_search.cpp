@@ -52,7 +52,13 @@ ClearanceSearch::ClearanceSearch(const OpenGrid& grid, const DistanceField& fiel
       field_(field),
       also_(std::move(also)),
       costs_(field.reach()),
-      states_(static_cast<std::size_t>(grid.width()) * static_cast<std::size_t>(grid.height())) {}
+      states_(static_cast<std::size_t>(grid.width()) * static_cast<std::size_t>(grid.height())),
+      buckets_(kBuckets) {}
+
+void ClearanceSearch::heed(const ExtraCosts* extra) {
+  extra_ = extra;
+  buckets_.resize(extra_ == nullptr ? kBuckets : kBucketsWithExtra);
+}
 
 std::int64_t ClearanceSearch::at_least(Cell from, Cell to) {
   const std::int64_t dx = std::abs(std::int64_t{from.x} - to.x);
@@ -86,7 +92,7 @@ void ClearanceSearch::reach(std::uint32_t index, Cell cell, std::int64_t cost, i
   const std::int64_t total = cost + at_least(cell, goal_);
   if (total >= limit_) return;
   state = {cost, query_, static_cast<std::uint8_t>(direction), false};
-  buckets_[static_cast<std::size_t>(total % kBuckets)].push_back(index);
+  bucket(total).push_back(index);
   ++waiting_;
 }
 
@@ -110,13 +116,13 @@ std::optional<ClearPath> ClearanceSearch::find(Cell start, Cell goal, const Limi
   least_ = at_least(start, goal);
   reach(index_of(start), start, 0, 0);
   while (waiting_ > 0) {
-    std::vector<std::uint32_t>& bucket = buckets_[static_cast<std::size_t>(least_ % kBuckets)];
-    if (bucket.empty()) {
+    std::vector<std::uint32_t>& next = bucket(least_);
+    if (next.empty()) {
       ++least_;
       continue;
     }
-    const std::uint32_t index = bucket.back();
-    bucket.pop_back();
+    const std::uint32_t index = next.back();
+    next.pop_back();
     --waiting_;
     State& state = states_[index];
     if (state.is_done) continue;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "planner/lattice/distance_field.hpp"
+#include "planner/search/extra_costs.hpp"
 #include "planner/search/sight_rule.hpp"
 #include "planner/search/zeroed.hpp"
 
@@ -48,6 +49,9 @@ class ClearanceSearch {
   /// `also`, if there is such a rule.
   ClearanceSearch(const OpenGrid& grid, const DistanceField& field, SightRule also = {});
 
+  /// Cells cost that much more from now on. Null: none does. It must outlive this.
+  void heed(const ExtraCosts* extra);
+
   /// What a search may find and take.
   struct Limits {
     std::int64_t cost = std::numeric_limits<std::int64_t>::max();      ///< a path must cost less
@@ -71,7 +75,8 @@ class ClearanceSearch {
   [[nodiscard]] std::int64_t cost(const std::vector<Cell>& cells) const;
 
  private:
-  static constexpr int kBuckets = 1024;  ///< more than a step and what it leads away from the goal can cost
+  /// Powers of two, more than a step and what it leads away from the goal can cost.
+  static constexpr std::size_t kBuckets = 1024, kBucketsWithExtra = 4096;
   struct State {
     std::int64_t cost;
     std::uint32_t query;
@@ -85,7 +90,13 @@ class ClearanceSearch {
   [[nodiscard]] std::uint32_t index_of(Cell cell) const;
   [[nodiscard]] Cell cell_at(std::uint32_t index) const;
   [[nodiscard]] std::vector<Cell> trace(Cell start, Cell goal) const;
-  [[nodiscard]] int factor_at(Cell cell) const { return costs_.factor(field_.squared(cell)); }
+  [[nodiscard]] int factor_at(Cell cell) const {
+    const int factor = costs_.factor(field_.squared(cell));
+    return extra_ == nullptr ? factor : factor + ClearanceCost::kUnit * extra_->at(cell);
+  }
+  [[nodiscard]] std::vector<std::uint32_t>& bucket(std::int64_t total) {
+    return buckets_[static_cast<std::size_t>(total) & (buckets_.size() - 1)];
+  }
   [[nodiscard]] std::int64_t step(Cell from, Cell to) const;
   [[nodiscard]] std::int64_t line_cost(Cell from, Cell to) const;
   [[nodiscard]] int least_on_line(Cell from, Cell to) const;
@@ -94,9 +105,10 @@ class ClearanceSearch {
   const DistanceField& field_;
   SightRule also_;
   ClearanceCost costs_;
+  const ExtraCosts* extra_ = nullptr;
   Zeroed<State> states_;
   std::uint32_t query_ = 0;
-  std::array<std::vector<std::uint32_t>, kBuckets> buckets_;
+  std::vector<std::vector<std::uint32_t>> buckets_;
   std::int64_t least_ = 0;    ///< total cost of the present bucket
   std::int64_t waiting_ = 0;  ///< in all buckets
   Cell goal_;

@@ -61,6 +61,18 @@ void GridPaths::prepare_clear() {
   if (clearance_) return;
   field_ = std::make_unique<DistanceField>(grid_, reach_);
   clearance_ = std::make_unique<ClearanceSearch>(grid_, *field_, also_);
+  clearance_->heed(extra_.get());
+}
+
+bool GridPaths::set_extra(Cell cell, int cost) {
+  if (!extra_) {
+    if (cost == 0) return false;
+    extra_ = std::make_unique<ExtraCosts>(grid_);
+    if (clearance_) clearance_->heed(extra_.get());
+  }
+  if (extra_->at(cell) == cost) return false;
+  extra_->set(cell, cost);
+  return true;
 }
 
 bool GridPaths::connected(Cell a, Cell b) {

@@ -44,6 +44,9 @@ class GridPaths {
   /// The same; where looking at so many cells does not find it, the fast path with lines where they are as good.
   /// Nothing where there is no way only.
   [[nodiscard]] std::optional<ClearPath> clear_or_fast(Cell start, Cell goal, std::int64_t most_expanded);
+  /// What it costs a path away from walls besides to be in a cell; nothing at first. Returns whether it was another.
+  /// @pre the grid holds the cell, 0 <= cost <= ExtraCosts::kMost.
+  bool set_extra(Cell cell, int cost);
   /// @pre prepare_clear.
   [[nodiscard]] ClearanceSearch& clearance() { return *clearance_; }
   [[nodiscard]] const DistanceField& field() const { return *field_; }
@@ -69,6 +72,7 @@ class GridPaths {
   std::unique_ptr<JumpSearch> jump_;
   std::unique_ptr<AnyAngleSearch> any_angle_;
   std::unique_ptr<DistanceField> field_;
+  std::unique_ptr<ExtraCosts> extra_;  ///< none before a cell has any
   std::unique_ptr<ClearanceSearch> clearance_;
 };
 

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <memory>
 #include <sstream>
@@ -13,8 +11,10 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "file_text.hpp"
 #include "planner/scenario/scenario.hpp"
 #include "pose_figures.hpp"
+#include "projection_figures.hpp"
 #include "replan_figures.hpp"
 
 namespace concord {
@@ -32,11 +32,6 @@ struct Case {
   std::vector<ScenarioQuery> queries;
 };
 
-std::string read(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 std::vector<Case> load(const fs::path& folder) {
   std::vector<Case> cases;
   std::vector<fs::path> maps;
@@ -45,9 +40,9 @@ std::vector<Case> load(const fs::path& folder) {
   }
   std::sort(maps.begin(), maps.end());
   for (const fs::path& map : maps) {
-    auto grid = read_movingai_map(read(map));
+    auto grid = read_movingai_map(file_text(map));
     if (!grid) throw std::runtime_error(map.string() + ": " + grid.error().message);
-    auto queries = read_movingai_scenario(read(map.string() + ".scen"), grid->width(), grid->height());
+    auto queries = read_movingai_scenario(file_text(map.string() + ".scen"), grid->width(), grid->height());
     if (!queries) throw std::runtime_error(map.string() + ".scen: " + queries.error().message);
     cases.push_back({map.stem().string(), map, std::move(*grid), std::move(*queries)});
   }
@@ -126,7 +121,7 @@ json bench_fast(const Case& c, const std::string& warthog, Sums& sums) {
 /// Queries with the length of the shortest path at any angle in place of their optimum, by the map's file.
 std::map<std::string, std::vector<ScenarioQuery>> read_optima(const fs::path& csv) {
   std::map<std::string, std::vector<ScenarioQuery>> optima;
-  std::istringstream lines(read(csv));
+  std::istringstream lines(file_text(csv));
   std::string line;
   std::getline(lines, line);
   while (std::getline(lines, line)) {
@@ -264,6 +259,25 @@ json bench_poses(const fs::path& data, bool quiet) {
   return figures;
 }
 
+/// Of one edit, of a robot's submap, and what a scan over all leaves takes.
+json bench_projection(bool quiet) {
+  const ProjectionFigures f = projection_figures();
+  const double edit = quantile(f.edit_us, 0.5);
+  json figures{{"map_voxels", f.map_voxels},
+               {"edit_us_p50", edit},
+               {"edit_us_p99", quantile(f.edit_us, 0.99)},
+               {"edit_columns", f.edit_columns},
+               {"octomap_scan_us", quantile(f.scan_us, 0.5)},
+               {"edit_times_as_fast", quantile(f.scan_us, 0.5) / edit},
+               {"agent_columns", f.agent_columns},
+               {"agent_us", f.agent_us},
+               {"agent_us_per_column", f.agent_us / static_cast<double>(f.agent_columns)},
+               {"whole_us_per_column", f.whole_us / static_cast<double>(f.map_columns)},
+               {"wrong_cells", f.wrong_cells}};
+  if (!quiet) std::printf("projection %s\n\n", figures.dump().c_str());
+  return figures;
+}
+
 }  // namespace
 }  // namespace concord
 
@@ -281,6 +295,7 @@ int main(int argc, char** argv) {
     nlohmann::json figures;
     for (const char* folder : {"buildings_conf", "movingai"}) figures[folder] = bench(data, folder, warthog, as_json);
     figures["poses"] = bench_poses(data, as_json);
+    figures["projection"] = bench_projection(as_json);
     if (as_json) std::printf("%s\n", figures.dump(2).c_str());
   } catch (const std::exception& e) {
     std::fprintf(stderr, "bench_plan: %s\n", e.what());

@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <stdexcept>
 
+#include "file_text.hpp"
 #include "planner/files/map_server.hpp"
 #include "planner/files/movingai.hpp"
 #include "planner/footprint/standing_room.hpp"
@@ -15,11 +14,6 @@ namespace concord {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string read(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 template <class T>
 T value(Result<T> result, const fs::path& file) {
@@ -33,8 +27,8 @@ struct Building {
 };
 
 Building load(const fs::path& yaml) {
-  const auto info = value(read_map_server_yaml(read(yaml)), yaml);
-  const std::string pgm = read(yaml.parent_path() / info.image);
+  const auto info = value(read_map_server_yaml(file_text(yaml)), yaml);
+  const std::string pgm = file_text(yaml.parent_path() / info.image);
   return {info,
           value(read_map_server_pgm(info, {reinterpret_cast<const std::uint8_t*>(pgm.data()), pgm.size()}), yaml)};
 }
@@ -50,7 +44,7 @@ std::optional<Pose> pose_at(const StandingRoom& room, Cell cell, std::size_t que
 }
 
 PoseCase make_case(const std::string& name, OpenGrid grid, double resolution, const fs::path& scen, std::size_t count) {
-  const auto queries = value(read_movingai_scenario(read(scen), grid.width(), grid.height()), scen);
+  const auto queries = value(read_movingai_scenario(file_text(scen), grid.width(), grid.height()), scen);
   PoseCase c{name, std::move(grid), resolution, {}};
   const DistanceField field(c.grid, 60);
   const StandingRoom room(c.grid, field, pose_case_robot().scaled(1 / resolution));
@@ -78,7 +72,7 @@ std::vector<PoseCase> pose_cases(const fs::path& data, std::size_t count) {
     const bool is_fenced = name == "warehouse_keepout";
     const Building building = load(data / "buildings" / (is_fenced ? "warehouse.yaml" : name + ".yaml"));
     const fs::path scen = data / "buildings_conf" / (name + "_r030.map.scen");
-    const auto size = value(read_movingai_map(read(fs::path(scen).replace_extension(""))), scen);
+    const auto size = value(read_movingai_map(file_text(fs::path(scen).replace_extension(""))), scen);
     OpenGrid grid(size.width(), size.height());
     const Building fences = is_fenced ? load(data / "buildings" / "warehouse_keepout.yaml") : Building{};
     for (int y = 0; y < grid.height(); ++y) {

@@ -98,7 +98,7 @@ class Stack {
     Running(Bus& bus, Counters& counters, const Site& site, const BrickMap& submap)
         : ingest({bus, counters, site, "ingest", bus.now()}),
           merge({bus, counters, site, "merge", bus.now()}),
-          planner({bus, counters, site, "planner", bus.now()}),
+          planner({bus, counters, site, "planner", bus.now()}, std::launch::deferred),
           robot(bus, counters, {"in/robot1", site.resolution, 5e6, bus.now()}, submap) {
       robot.begin("odom");
     }

@@ -1,6 +1,7 @@
 #include "agent/sim/sim_node.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 
 #include <spdlog/spdlog.h>
@@ -12,6 +13,8 @@ namespace {
 
 constexpr std::int64_t kStep = 5'000;
 constexpr std::int64_t kPublishPeriod = 500'000;
+constexpr std::int64_t kDrive = 100'000;     // between two poses of a robot that follows a path
+constexpr double kBumper = 0.5;              // metres above the floor
 constexpr std::int64_t kLinger = 3'000'000;  // a digest a second: time for every receiver to ask for what it lacks
 
 }  // namespace
@@ -22,7 +25,8 @@ SimNode::SimNode(const NodeContext& context, const Config& config)
       config_(config),
       resolution_(context.site.resolution),
       boot_id_(context.boot_id),
-      world_(make_warehouse(config.seed)) {
+      world_(make_warehouse(config.seed)),
+      robot_(context.site.agent(config.agent)) {
   if (config.kind == AgentKind::kCamera) {
     cloud_out_.emplace(bus_, counters_, config.agent, boot_id_, [this] { begin(); });
   } else {
@@ -32,6 +36,38 @@ SimNode::SimNode(const NodeContext& context, const Config& config)
   begin();
   bus_.every(kStep, [this] { step(); });
   bus_.every(kPublishPeriod, [this] { publish_changes(); });
+  if (config.kind == AgentKind::kHeadset) return;  // a person goes where they like
+  listen<Path>(bus_, counters_, context.process, "out/path/" + config.agent,
+               [this](const std::string&, const Path& path) {
+                 if (follower_) follower_->hear(path, bus_.now());
+               });
+  bus_.every(kDrive, [this] { drive(); });
+}
+
+/// A robot has a bumper: what stands there stops it, be it seen or not.
+void SimNode::drive() {
+  if (self_->next_time() <= self_->duration()) return;
+  if (!follower_) {
+    const Transform T = self_->last_pose();
+    follower_.emplace(PathFollower::Place{T.translation().head<2>(), std::atan2(T.linear()(1, 0), T.linear()(0, 0))},
+                      robot_.speed);
+  }
+  const Eigen::Vector2d from = follower_->place().p;
+  const double yaw = follower_->heading();
+  const Ray ahead{{from.x(), from.y(), kBumper}, {std::cos(yaw), std::sin(yaw), 0}};
+  const double reach = robot_.radius + robot_.speed * kDrive * 1e-6;
+  const auto hit = world_.cast(ahead, reach, Glass::kStops);
+  const bool moved = follower_->go(kDrive * 1e-6, hit ? hit->distance - robot_.radius : reach, bus_.now());
+  if (hit) counters_.add("bumps");
+  counters_.set("driven_cm", std::llround(100 * follower_->driven()));
+  counters_.set("stops", follower_->stops());
+  if (!moved) return;
+  Transform T_map_base = Transform::Identity();
+  T_map_base.translation().head<2>() = follower_->place().p;
+  T_map_base.linear() = Eigen::AngleAxisd(follower_->place().yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  const Transform T_agent_base = self_->go_on(T_map_base);
+  submap_out_ ? submap_out_->publish_pose(T_agent_base, bus_.now())
+              : cloud_out_->publish_pose(T_agent_base, bus_.now());
 }
 
 void SimNode::begin() {
@@ -43,6 +79,7 @@ void SimNode::begin() {
   if (cloud_out_) cloud_out_->begin_frame(frame_id);
   began_ = bus_.now();
   scans_ = 0;
+  follower_.reset();
   submap_.clear();
   changed_.clear();
   idle_since_ = 0;

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "agent/cloud_publisher.hpp"
+#include "agent/sim/path_follower.hpp"
 #include "agent/sim/simulated_agent.hpp"
 #include "agent/submap_publisher.hpp"
 #include "bus/process.hpp"
@@ -11,7 +12,8 @@
 namespace concord {
 
 /// One simulated agent on the bus. LiDAR robot and headset map themselves and send their submap; the depth camera sends
-/// clouds. A reset carries the agent back to where it started, where it begins anew in a new frame.
+/// clouds. At the end of its way a robot follows the path that the planner keeps for it, at the site's speed for it. A
+/// reset carries the agent back to where it started, where it begins anew in a new frame.
 class SimNode {
  public:
   struct Config {
@@ -29,6 +31,7 @@ class SimNode {
   void step();
   void take(const Moment& moment);
   void map(const Moment& moment);
+  void drive();
   void publish_changes();
   void report();
   [[nodiscard]] bool all_sent() const;
@@ -46,8 +49,10 @@ class SimNode {
   int frames_ = 0;
   std::int64_t scans_ = 0;
   BrickMap submap_;
-  std::set<BrickIndex> changed_;  ///< since they were published last
-  std::int64_t idle_since_ = 0;   ///< 0: not idle
+  std::set<BrickIndex> changed_;          ///< since they were published last
+  std::int64_t idle_since_ = 0;           ///< 0: not idle
+  AgentConfig robot_;                     ///< as the site has it
+  std::optional<PathFollower> follower_;  ///< of a robot at the end of its way
 
   std::optional<SubmapPublisher> submap_out_;
   std::optional<CloudPublisher> cloud_out_;

@@ -26,10 +26,15 @@ class SimulatedAgent {
   /// Nothing after the end of its way.
   [[nodiscard]] std::optional<Moment> next();
 
+  /// Where it believes to be after it has gone on to there, at the end of its way.
+  [[nodiscard]] Transform go_on(const Transform& T_map_base) { return drift_.believe(T_map_base); }
+
   /// Seconds from its start to the next moment.
   [[nodiscard]] double next_time() const { return scans_ / sensor_.scans_per_second; }
   [[nodiscard]] const Sensor& sensor() const { return sensor_; }
   [[nodiscard]] double duration() const { return trajectory_.duration(); }
+  /// At the end of its way.
+  [[nodiscard]] Transform last_pose() const { return trajectory_.T_map_base(trajectory_.duration()); }
 
  private:
   const RayCaster& world_;

@@ -23,7 +23,7 @@ Lab::Lab(With with, double resolution) {
   }
   ingest = std::make_unique<IngestNode>(context("ingest"));
   if (with != kWithoutMerge) merge = std::make_unique<MergeNode>(context("merge"));
-  planner = std::make_unique<PlannerNode>(context("planner"));
+  planner = std::make_unique<PlannerNode>(context("planner"), std::launch::deferred);
   gate = std::make_unique<Gate>(random_secret);
   Hub::Config config = hub_config(site);
   config.local_role = Role::kRobot;

@@ -125,7 +125,7 @@ TEST_F(PlannerOnTheBus, OnAMapThatNobodySpeaksOfNothingNewIsPlanned) {
   std::vector<Answer> answers;
   listen<Answer>(bus, counters, "test", kAnswers,
                  [&](const std::string&, const Answer& value) { answers.push_back(value); });
-  const PlannerNode node({bus, counters, site_, "planner", kStart});
+  const PlannerNode node({bus, counters, site_, "planner", kStart}, std::launch::deferred);
   zones.set({});
   sender->begin("map");
   const auto ask_after = [&](double seconds, const std::string& id) {

@@ -131,7 +131,7 @@ TEST_F(PlannerOnTheBus, ALatePlannerHasTheSameGrid) {
   BrickSender sender(other_bus, other_counters, {.stream = "out/map", .resolution = 0.1, .boot_id = kStart}, map_);
   sender.begin("map");
   other_bus.advance_to(kStart + 5'000'000);
-  const PlannerNode late({other_bus, other_counters, site_, "planner", kStart + 5'000'000});
+  const PlannerNode late({other_bus, other_counters, site_, "planner", kStart + 5'000'000}, std::launch::deferred);
   other_bus.advance_to(kStart + 9'000'000);
   EXPECT_TRUE(late.map().synced());
   EXPECT_TRUE(late.planner().grid().cells() == before);

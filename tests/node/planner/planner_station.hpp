@@ -67,7 +67,9 @@ class PlannerOnTheBus : public testing::Test {
     return zone;
   }
 
-  void start_planner(std::int64_t boot_id) { node_.emplace(NodeContext{bus_, counters_, site_, "planner", boot_id}); }
+  void start_planner(std::int64_t boot_id) {
+    node_.emplace(NodeContext{bus_, counters_, site_, "planner", boot_id}, std::launch::deferred);
+  }
   void run_seconds(double seconds) {
     bus_.advance_to(bus_.now() + static_cast<std::int64_t>(seconds * 1e6));
     bus_.deliver();

@@ -44,7 +44,7 @@ const OrientedBox kOriented{some_transform(), {1, 2, 3}};
 const Prism kPrism{{{0, 0}, {4, 0}, {4, 3}, {1, 1}}, -0.5, 2};
 
 Zone zone(const std::string& name, Volume volume) {
-  return {name, Zone::Kind::kAllowContact, std::move(volume), some_transform(), "Zoë", kTime, 5};
+  return {name, Zone::Kind::kAllowContact, std::move(volume), some_transform(), "Zoë", kTime, 5, 0, 0};
 }
 
 Path no_path() {
@@ -78,6 +78,8 @@ Path some_path() {
   path.zmax = 1.8;
   path.failed_leg = 2;
   path.nearest = Eigen::Vector2d(3, 5);
+  path.footprint = {{1, 1}, {-1, 1}, {0, -2}};
+  path.turn_radius = 0.75;
   path.zones = {"Schweißzelle 2", "wet floor"};
   return path;
 }
@@ -132,7 +134,20 @@ const std::vector<MessageSample>& message_samples() {
                                            kPrism,
                                            {"headset", ""},
                                            4,
-                                           kTime}),
+                                           kTime,
+                                           0.5,
+                                           0}),
+      sample("zone_request_t", ZoneRequest{"z-3",
+                                           "Zoë",
+                                           ZoneRequest::Op::kAdd,
+                                           "slow",
+                                           Zone::Kind::kCostly,
+                                           kPrism,
+                                           {},
+                                           kAnyRevision,
+                                           kTime,
+                                           1.25,
+                                           7}),
       sample("zone_request_t",
              ZoneRequest{"z-2", "", ZoneRequest::Op::kDelete, "dock", Zone::Kind::kNoGo, {}, {}, kAnyRevision, kTime}),
       sample("lease_request_t", LeaseRequest{"l-1", "Zoë", "my corner", true, kOriented, {}, kTime}),
@@ -168,6 +183,18 @@ const std::vector<MessageSample>& message_samples() {
       sample("path_request_t", PathRequest{"r-6", "robot1", Eigen::Vector2d(1, 2), {3, 4}, 0.4, true, {{2, 2}}}),
       sample("path_request_t",
              PathRequest{"r-7", "robot1", std::nullopt, {0, 0}, 0, false, {}, PathRequest::Op::kCancel}),
+      sample("path_request_t", PathRequest{"r-9",
+                                           "robot1",
+                                           Eigen::Vector2d(1, 2),
+                                           {3, 4},
+                                           0,
+                                           true,
+                                           {},
+                                           PathRequest::Op::kPlan,
+                                           {{1, 1}, {-1, 1}, {0, -2}},
+                                           0.75,
+                                           -1.5,
+                                           2.5}),
       sample("path_watch_t", PathWatch{"r-8", "", "headset1"}),
       sample("path_t", some_path()),
       sample("path_t", no_path()),

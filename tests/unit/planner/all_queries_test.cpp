@@ -2,13 +2,12 @@
 // sources.
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <sstream>
 
 #include <gtest/gtest.h>
 
+#include "file_text.hpp"
 #include "planner/scenario/scenario.hpp"
 #include "shared_maps.hpp"
 
@@ -17,15 +16,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string read(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 /// Those of one map, with the shortest length at any angle as the optimum. Corners may be touched there.
 std::vector<ScenarioQuery> any_angle_queries(const fs::path& csv, const std::string& map) {
   std::vector<ScenarioQuery> queries;
-  std::istringstream lines(read(csv));
+  std::istringstream lines(file_text(csv));
   for (std::string line; std::getline(lines, line);) {
     std::replace(line.begin(), line.end(), ',', ' ');
     std::istringstream fields(line);
@@ -44,7 +38,7 @@ class AllQueries : public testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
     if (!fs::exists(map())) GTEST_SKIP() << "SKIPPED: no " << map() << " (real data stays outside the repository)";
-    auto read_grid = read_movingai_map(read(map()));
+    auto read_grid = read_movingai_map(file_text(map()));
     ASSERT_TRUE(read_grid) << read_grid.error().message;
     grid_.emplace(std::move(*read_grid));
   }
@@ -61,7 +55,7 @@ void expect_all_good(const ScenarioResult& result) {
 }
 
 TEST_P(AllQueries, AreAnsweredByTheShortestPath) {
-  const auto queries = read_movingai_scenario(read(map().string() + ".scen"), grid_->width(), grid_->height());
+  const auto queries = read_movingai_scenario(file_text(map().string() + ".scen"), grid_->width(), grid_->height());
   ASSERT_TRUE(queries) << queries.error().message;
   const ScenarioResult result = run_scenario(*grid_, *queries, Method::kFast, {.rounds = 0});
   expect_all_good(result);

@@ -11,7 +11,8 @@ namespace {
 using test::Plain;
 
 /// By plain Bellman and Ford: steps until nothing gets cheaper.
-std::optional<std::int64_t> cheapest(const Plain& plain, const DistanceField& field, Cell from, Cell to) {
+std::optional<std::int64_t> cheapest(const Plain& plain, const DistanceField& field, Cell from, Cell to,
+                                     const std::vector<int>& extra = {}) {
   const ClearanceCost costs(field.reach());
   std::vector<std::int64_t> best(plain.open.size(), std::numeric_limits<std::int64_t>::max());
   const auto at = [&](Cell c) -> std::int64_t& { return best[static_cast<std::size_t>(c.y) * plain.width + c.x]; };
@@ -25,7 +26,10 @@ std::optional<std::int64_t> cheapest(const Plain& plain, const DistanceField& fi
         for (int dx = -1; dx <= 1; ++dx) {
           const Cell other{cell.x + dx, cell.y + dy};
           if (other == cell || !plain.can_step(cell, other)) continue;
-          const int factors = costs.factor(field.squared(cell)) + costs.factor(field.squared(other));
+          int factors = costs.factor(field.squared(cell)) + costs.factor(field.squared(other));
+          for (const Cell c : {cell, other}) {
+            if (!extra.empty()) factors += 16 * extra[static_cast<std::size_t>(c.y) * plain.width + c.x];
+          }
           const std::int64_t cost = at(cell) + (dx != 0 && dy != 0 ? 181 : 128) * factors / 32;
           if (cost >= at(other)) continue;
           at(other) = cost;
@@ -83,6 +87,36 @@ TEST(Clearance, IsTheCheapestAndItsStraightLinesComeNoNearer) {
         });
       }
       ASSERT_GE(lines, least);
+    }
+  }
+}
+
+TEST(Clearance, HeedsWhatCellsCostBesides) {
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    const Plain plain = test::random_plain(random, 30);
+    GridPaths paths(test::to_grid(plain), 6);
+    if (seed % 2 == 0) paths.prepare_clear();
+    std::vector<int> extra(plain.open.size(), 0);
+    for (int i = 0; i < 20; ++i) {
+      // Rectangles whose price changes between questions.
+      const int x0 = static_cast<int>(random() % plain.width), y0 = static_cast<int>(random() % plain.height);
+      const int price = static_cast<int>(random() % 16);
+      for (int y = y0; y < std::min(y0 + 9, plain.height); ++y) {
+        for (int x = x0; x < std::min(x0 + 9, plain.width); ++x) {
+          int& known = extra[static_cast<std::size_t>(y) * plain.width + x];
+          ASSERT_EQ(paths.set_extra({x, y}, price), known != price);
+          known = price;
+        }
+      }
+      const Cell a = test::random_open(random, plain), b = test::random_open(random, plain);
+      const auto path = paths.clear(a, b);
+      const auto best = cheapest(plain, paths.field(), a, b, extra);
+      ASSERT_EQ(path.has_value(), best.has_value());
+      if (!path) continue;
+      ASSERT_EQ(path->cost, *best);
+      expect_good(paths, *path, a, b);
     }
   }
 }

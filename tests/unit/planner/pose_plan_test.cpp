@@ -25,7 +25,7 @@ const Pose kLeft{{5, 5}, 0.3}, kRight{{24, 9}, -2};
 
 PosePlan ask(const Grid& grid, const Footprint& footprint, const Pose& start, const Pose& goal,
              const ZoneLayer& zones = no_zones(), double turn_radius = 0.8) {
-  PosePlanner planner(grid, zones, footprint, turn_radius);
+  PosePlanner planner({grid, zones}, {footprint, turn_radius});
   PosePlan plan = planner.plan(start, goal, 7, [] { return false; });
   EXPECT_FALSE(plan.message.empty());
   EXPECT_EQ(plan.poses.empty(), plan.reason != Reason::kOk);
@@ -73,7 +73,7 @@ TEST(PosePlan, ReasonsSayWhatIsWrong) {
     EXPECT_EQ(ask(grid, footprint, kLeft, kRight, no_zones(), bad).reason, Reason::kBadRequest) << bad;
   }
   EXPECT_EQ(ask(test::sketch({}), footprint, kLeft, kRight).reason, Reason::kNoMap);
-  PosePlanner planner(grid, no_zones(), footprint, 0.8);
+  PosePlanner planner(grid, {footprint, 0.8});
   EXPECT_TRUE(planner.plan(kLeft, kRight, 0, [] { return true; }).stopped);
 }
 
@@ -93,7 +93,7 @@ TEST(PosePlan, NoGoZonesAreWalls) {
   const Grid grid = rooms();
   ZoneLayer zones(grid.resolution(), grid.band());
   const std::vector<Zone> shut{test::no_go("door", {14, 6}, {16, 9})};
-  PosePlanner planner(grid, zones, *make_rectangle(1.2, 0.8), 0);
+  PosePlanner planner({grid, zones}, {*make_rectangle(1.2, 0.8), 0});
   const auto never = [] { return false; };
   EXPECT_EQ(planner.plan(kLeft, kRight, 1, never).reason, Reason::kOk);
   const auto columns = [](const ZoneLayer::Change& change) {

@@ -177,7 +177,7 @@ TEST_F(RobotsOnTheGrid, EachHeightHasAGridOfItsOwn) {
   const auto status = [&](const std::string& id, std::pair<double, double> band) {
     request.id = id;
     planner.serve(now());
-    return planner.request(request, {0.3, 0.5, band}, now()).path.value().status;
+    return planner.request(request, {0.3, 0.5, {}, band}, now()).path.value().status;
   };
   EXPECT_EQ(status("tall", {0, 2}), "NO_VALID_PATH");
   EXPECT_EQ(status("low", {0, 1}), "OK");

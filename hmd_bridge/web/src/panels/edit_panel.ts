@@ -54,7 +54,7 @@ function useSection(app: App): HTMLElement {
   const { editor } = app;
   const label = el("input", { type: "text", placeholder: "what it is, such as chair", maxlength: 40, "aria-label": "Label" });
   const zone = el("input", { type: "text", placeholder: "name of the zone", maxlength: 40, "aria-label": "Name of the zone" });
-  const kind = select([{ value: "no_go", title: "Keep out" }, { value: "allow_contact", title: "Contact allowed" }], { "aria-label": "Kind of zone" });
+  const kind = select([{ value: "no_go", title: "Keep out" }, { value: "allow_contact", title: "Contact allowed" }, { value: "costly", title: "Better not" }, { value: "corridor", title: "Corridor: ways keep to it" }], { "aria-label": "Kind of zone" });
   return section("Use the selection",
     el("div", { class: "row" }, label, button("Label", () => void editor.label(label.value.trim()))),
     el("div", { class: "row" }, zone, kind, button("Add zone", () => void editor.zone(zone.value.trim(), kind.value as ZoneKind))),
@@ -72,7 +72,7 @@ function zonesSection(app: App): HTMLElement {
 
 function zoneRow(app: App, { name, zone_kind, author, revision, volume, T_map_zone }: Zone): HTMLElement {
   const other: ZoneKind = zone_kind === "no_go" ? "allow_contact" : "no_go";
-  const words: Record<ZoneKind, string> = { no_go: "keep out", allow_contact: "contact allowed" };
+  const words: Record<ZoneKind, string> = { no_go: "keep out", allow_contact: "contact allowed", costly: "better not", corridor: "corridor" };
   // A zone's volume is in its own frame; only one that is not turned against the map can be said again in the map's.
   const still = T_map_zone.position.every((c) => c === 0) && T_map_zone.rotation[3] === 1;
   const change = (): Promise<unknown> =>
