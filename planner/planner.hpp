@@ -113,14 +113,14 @@ class Planner {
   struct PoseJob {
     std::string robot;
     Level* level;
-    std::shared_ptr<PosePlanner> planner;
+    Body body;
     Pose start;
     std::vector<PoseTarget> targets;
     std::optional<PosePlan> refused = {};   ///< when its turn came
     std::shared_ptr<PoseQuest> quest = {};  ///< none before that
 
-    PoseJob(std::string of, Level* on, std::shared_ptr<PosePlanner> by, const Pose& from, std::vector<PoseTarget> to)
-        : robot(std::move(of)), level(on), planner(std::move(by)), start(from), targets(std::move(to)) {}
+    PoseJob(std::string of, Level* on, Body with, const Pose& from, std::vector<PoseTarget> to)
+        : robot(std::move(of)), level(on), body(std::move(with)), start(from), targets(std::move(to)) {}
     PoseJob(const PoseJob&) = delete;
     PoseJob& operator=(const PoseJob&) = delete;
     ~PoseJob() {

@@ -74,7 +74,7 @@ std::optional<PlanResult> Planner::begin_poses(Active& active) {
   const auto planner = active.level->poses().at(active.request.robot, *active.robot.body);
   if (auto refused = planner->check(start, targets)) return result_of(std::move(*refused));
   active.begun = version_;
-  active.job = std::make_shared<PoseJob>(active.request.robot, active.level, planner, start, targets);
+  active.job = std::make_shared<PoseJob>(active.request.robot, active.level, *active.robot.body, start, targets);
   jobs_.push_back(active.job);
   return std::nullopt;
 }
@@ -87,8 +87,9 @@ std::shared_ptr<PoseQuest> Planner::next_quest() {
     jobs_.pop_front();
     if (!job) continue;  // withdrawn
     job->level->look_as(job->robot);
-    job->refused = job->planner->check(job->start, job->targets);
-    if (!job->refused) running_ = job->quest = job->planner->begin(job->start, job->targets);
+    const auto planner = job->level->poses().at(job->robot, job->body);
+    job->refused = planner->check(job->start, job->targets);
+    if (!job->refused) running_ = job->quest = planner->begin(job->start, job->targets);
   }
   return running_;
 }
@@ -105,7 +106,10 @@ bool Planner::find_poses(Active& active, const Moment& moment) {
   const bool is_over = active.job->refused || (active.job->quest && active.job->quest->is_done());
   if (!is_over) return false;
   const std::shared_ptr<PoseJob> job = std::exchange(active.job, nullptr);
-  PosePlan found = job->refused ? std::move(*job->refused) : job->planner->finish(*job->quest, moment.map_revision);
+  // Not of necessity the planner that began it: that may have been dropped meanwhile, and know nothing of changes
+  // since.
+  const auto planner = active.level->poses().at(active.request.robot, *active.robot.body);
+  PosePlan found = job->refused ? std::move(*job->refused) : planner->finish(*job->quest, moment.map_revision);
   effort_ += static_cast<std::int64_t>(found.poses.size()) * kEffortOfAPose;
   if (found.reason == Reason::kValidationFailed && active.begun != version_) {
     if (++active.tries < kMostTries) return find_poses(active, moment);

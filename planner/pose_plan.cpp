@@ -52,12 +52,13 @@ void PosePlanner::lay_out() {
       }
       const std::uint64_t cells = passable(column);
       (void)area_->set(column, cells);
-      if (ground_) ground_->changed.push_back({column, cells});
+      if (ground_) changed_.push_back({column, cells});
     }
   }
   touched_.clear();
   if (area_) return;
   ground_.reset();
+  changed_.clear();
   BrickIndex low{kMaxVoxel, kMaxVoxel, 0}, high{-kMaxVoxel, -kMaxVoxel, 0};
   const BrickMap& known = terrain_.grid().cells();
   known.for_each_brick([&](BrickIndex b, const Brick&) {
@@ -114,6 +115,8 @@ std::shared_ptr<PoseQuest> PosePlanner::begin(const Pose& start, std::vector<Pos
     ground_ = std::make_shared<PoseGround>(
         PoseGround{*area_, body_.footprint.scaled(per_cell), body_.turn_radius * kChordRadius * per_cell, {}, nullptr});
   }
+  ground_->changed.insert(ground_->changed.end(), changed_.begin(), changed_.end());
+  changed_.clear();
   return std::make_shared<PoseQuest>(ground_, start, std::move(targets), terrain_.resolution());
 }
 

@@ -94,7 +94,8 @@ class PosePlanner {
   Body body_;
   std::set<BrickIndex> touched_;
   std::unique_ptr<PoseArea> area_;      ///< what the validator looks at; none while it is not worked out, or too large
-  std::shared_ptr<PoseGround> ground_;  ///< what searches look at
+  std::shared_ptr<PoseGround> ground_;  ///< what searches look at, in whatever thread: left alone but by `begin`
+  std::vector<ColumnPlane> changed_;    ///< of the area, that the ground has not been told of
 };
 
 }  // namespace concord

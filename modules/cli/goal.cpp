@@ -21,7 +21,8 @@ struct Goal {
   std::string robot, from;
   std::vector<double> to;
   std::vector<std::string> via;
-  double radius = 0.0;  ///< 0: the site file's
+  double radius = 0.0;        ///< 0: the site file's
+  std::optional<double> yaw;  ///< of a robot with a footprint, at the goal
 };
 
 Outcome goal(const Goal& goal, const Common& common) {
@@ -29,6 +30,7 @@ Outcome goal(const Goal& goal, const Common& common) {
   request.robot = goal.robot;
   request.goal = {goal.to[0], goal.to[1]};
   request.radius = goal.radius;
+  request.goal_yaw = goal.yaw;
   request.keep_active = true;
   if (!goal.from.empty()) {
     const auto from = parse_point(goal.from);
@@ -133,6 +135,7 @@ void add_goals(Program& program) {
       [options](const Common& common) { return goal(*options, common); });
   go.add_option("robot", options->robot, "the robot's id")->required();
   go.add_option("goal", options->to, "x y, map frame, metres")->expected(2)->required();
+  go.add_option("--yaw", options->yaw, "where a robot with a footprint is to point there, radians; without it anywhere");
   go.add_option("--from", options->from,
                 "\"x y\", map frame; without it the robot's last pose, also when planned anew");
   go.add_option("--via", options->via, "\"x y\", map frame, metres: a place to pass first; may be given again");

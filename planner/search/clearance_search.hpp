@@ -19,8 +19,9 @@ struct ClearPath {
   double length = 0;        ///< cells
   std::vector<Cell> cells;  ///< as they were found, each a neighbour of the one before
   std::vector<Cell> turns;  ///< straight lines between cell centres that touch open cells only
-  int least_squared = 0;    ///< distance of its cells to what is blocked, squared, as far as the field reaches
   std::int64_t expanded = 0;
+  std::vector<std::int64_t> sums;  ///< by cell, what the path costs so far
+  std::vector<std::size_t> at;     ///< by turn, which cell it is
 };
 
 /// What it costs to be near something blocked: a step costs its length times a factor of 1 out of reach that grows to
@@ -71,6 +72,14 @@ class ClearanceSearch {
   /// What a path between two cells costs at least.
   [[nodiscard]] static std::int64_t at_least(Cell from, Cell to);
 
+  /// The same where the cells before `old.cells[first]` and behind `old.cells[last]` are those of `old`, and nothing
+  /// there costs more than it did: its straight lines stay as far as they do not come near `changed`.
+  [[nodiscard]] ClearPath shorten_again(std::vector<Cell> cells, const ClearPath& old, std::size_t first,
+                                        std::size_t last, const Window& changed) const;
+
+  /// Costs have changed between two cells of the path, both included, and nowhere else on it.
+  void follow(ClearPath& path, std::size_t first, std::size_t last) const;
+
   /// What the cells cost as they are. @pre see shorten.
   [[nodiscard]] std::int64_t cost(const std::vector<Cell>& cells) const;
 
@@ -100,6 +109,8 @@ class ClearanceSearch {
   [[nodiscard]] std::int64_t step(Cell from, Cell to) const;
   [[nodiscard]] std::int64_t line_cost(Cell from, Cell to) const;
   [[nodiscard]] int least_on_line(Cell from, Cell to) const;
+  void sum_up(ClearPath& path, std::size_t first, std::size_t last) const;
+  void draw_lines(ClearPath& path, std::size_t from, std::size_t last) const;
 
   const OpenGrid& grid_;
   const DistanceField& field_;

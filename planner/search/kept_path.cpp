@@ -26,6 +26,12 @@ bool holds(const Window& window, Cell cell) {
   return cell.x >= window.low.x && cell.x <= window.high.x && cell.y >= window.low.y && cell.y <= window.high.y;
 }
 
+/// Whether the rectangle around both cells does.
+bool meets(const Window& window, Cell a, Cell b) {
+  return std::max(a.x, b.x) >= window.low.x && std::min(a.x, b.x) <= window.high.x &&
+         std::max(a.y, b.y) >= window.low.y && std::min(a.y, b.y) <= window.high.y;
+}
+
 Cell nearest(const Window& window, Cell cell) {
   return {std::clamp(cell.x, window.low.x, window.high.x), std::clamp(cell.y, window.low.y, window.high.y)};
 }
@@ -70,15 +76,15 @@ KeptPath::Outcome KeptPath::follow(const Window& window, bool opened) {
   if (!path_) return opened ? plan(start_, goal_) : Outcome::kUnreachable;
   if (!paths_->connected(start_, goal_)) return take(std::nullopt);
   const std::optional<Stretch> stretch = near(window);
-  if (!stretch || is_open(window)) {
-    if (stretch) path_->cost = paths_->clearance().cost(path_->cells);
+  if (stretch) paths_->clearance().follow(*path_, stretch->first, stretch->last);
+  if (!stretch || is_open(window, *stretch)) {
     if (path_->cost <= with_share(cost_)) {
       may_improve_ = may_improve_ || (opened && could_save(window));
       return Outcome::kKept;
     }
   }
   may_improve_ = may_improve_ || opened;
-  if (expanded_ > kSmall && repair(*stretch)) return Outcome::kRepaired;
+  if (stretch && expanded_ > kSmall && repair(*stretch, window)) return Outcome::kRepaired;
   return plan(start_, goal_);
 }
 
@@ -103,9 +109,7 @@ std::optional<KeptPath::Stretch> KeptPath::near(const Window& window) const {
     for (std::size_t i = 1; i < path_->turns.size(); ++i) {
       const Cell a = path_->turns[i - 1];
       const Cell b = path_->turns[i];
-      const bool apart = std::max(a.x, b.x) < window.low.x || std::min(a.x, b.x) > window.high.x ||
-                         std::max(a.y, b.y) < window.low.y || std::min(a.y, b.y) > window.high.y;
-      if (!apart && !paths_->sees(a, b)) return Stretch{0, cells.size() - 1};
+      if (meets(window, a, b) && !paths_->sees(a, b)) return Stretch{0, cells.size() - 1};
     }
     return std::nullopt;
   }
@@ -114,16 +118,19 @@ std::optional<KeptPath::Stretch> KeptPath::near(const Window& window) const {
 }
 
 /// Whether the lines and the cells that come to the window are still open.
-bool KeptPath::is_open(const Window& window) const {
+bool KeptPath::is_open(const Window& window, const Stretch& stretch) const {
   const OpenGrid& grid = paths_->grid();
-  const auto blocked = [&](Cell cell) { return holds(window, cell) && !grid.is_open(cell); };
-  if (std::any_of(path_->cells.begin(), path_->cells.end(), blocked)) return false;
-  for (std::size_t i = 1; i < path_->turns.size(); ++i) {
-    if (!paths_->sees(path_->turns[i - 1], path_->turns[i])) return false;
-  }
   // A step over a corner that was filled is not in any cell.
-  for (std::size_t i = 1; i < path_->cells.size(); ++i) {
-    if (holds(grown(window, 1), path_->cells[i]) && !sees(grid, path_->cells[i - 1], path_->cells[i])) return false;
+  const Window beside = grown(window, 1);
+  for (std::size_t i = stretch.first; i <= stretch.last; ++i) {
+    const Cell cell = path_->cells[i];
+    if (holds(window, cell) && !grid.is_open(cell)) return false;
+    if (i > 0 && holds(beside, cell) && !sees(grid, path_->cells[i - 1], cell)) return false;
+  }
+  for (std::size_t i = 1; i < path_->turns.size(); ++i) {
+    if (meets(beside, path_->turns[i - 1], path_->turns[i]) && !paths_->sees(path_->turns[i - 1], path_->turns[i])) {
+      return false;
+    }
   }
   return true;
 }
@@ -137,22 +144,20 @@ bool KeptPath::could_save(const Window& window) const {
   return with_share(least) < path_->cost;
 }
 
-bool KeptPath::repair(const Stretch& stretch) {
+bool KeptPath::repair(const Stretch& stretch, const Window& window) {
   const std::vector<Cell>& cells = path_->cells;
   // Room on both sides to turn off and back, as long as the stretch itself.
   const std::size_t room = stretch.last - stretch.first + 1;
   const std::size_t from = stretch.first > room ? stretch.first - room : 0;
   const std::size_t to = std::min(stretch.last + room, cells.size() - 1);
-  const ClearanceSearch& search = paths_->clearance();
-  std::vector<Cell> whole(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(from) + 1);
-  const std::vector<Cell> after(cells.begin() + static_cast<std::ptrdiff_t>(to), cells.end());
-  const std::int64_t left = with_share(cost_) - search.cost(whole) - search.cost(after);
+  const std::int64_t left = with_share(cost_) - path_->sums[from] - (path_->cost - path_->sums[to]);
   const auto count = static_cast<std::int64_t>(to - from + 1);
   const auto between = paths_->clear(cells[from], cells[to], {left + 1, std::min(kPerCell * count, expanded_ / kPart)});
   if (!between) return false;
-  whole.insert(whole.end(), between->cells.begin() + 1, between->cells.end());
-  whole.insert(whole.end(), after.begin() + 1, after.end());
-  path_ = search.shorten(std::move(whole));
+  std::vector<Cell> whole(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(from));
+  whole.insert(whole.end(), between->cells.begin(), between->cells.end());
+  whole.insert(whole.end(), cells.begin() + static_cast<std::ptrdiff_t>(to) + 1, cells.end());
+  path_ = paths_->clearance().shorten_again(std::move(whole), *path_, from, to, grown(window, paths_->field().reach()));
   return true;
 }
 

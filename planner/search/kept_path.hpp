@@ -54,9 +54,9 @@ class KeptPath {
   };
 
   [[nodiscard]] std::optional<Stretch> near(const Window& window) const;
-  [[nodiscard]] bool is_open(const Window& window) const;
+  [[nodiscard]] bool is_open(const Window& window, const Stretch& stretch) const;
   [[nodiscard]] bool could_save(const Window& window) const;
-  [[nodiscard]] bool repair(const Stretch& stretch);
+  [[nodiscard]] bool repair(const Stretch& stretch, const Window& window);
   Outcome take(std::optional<ClearPath> found);
 
   GridPaths* paths_;

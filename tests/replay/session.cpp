@@ -109,7 +109,13 @@ std::vector<LogEvent> record_session() {
   wait(0.5);
   robot1.change();
   wait(0.5);
-  const Bytes ask = encode(PathRequest{"path", "robot1", std::nullopt, {2.6, 4.2}, 0.1, true, {}}, air.now());
+  PathRequest request;
+  request.id = "path";
+  request.robot = "robot1";
+  request.goal = {2.6, 4.2};
+  request.radius = 0.1;
+  request.keep_active = true;
+  const Bytes ask = encode(request, air.now());
   air.publish("in/path_request", ask);
   wait(0.2);
   air.publish("in/edit", encode(pane_of_glass(air.now())));

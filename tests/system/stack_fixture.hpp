@@ -14,10 +14,12 @@ namespace concord::test {
 /// A stack that has not been started, and a person who hears which agents there are.
 class StackFixture : public SystemTest {
  protected:
+  /// Added to the site file.
+  [[nodiscard]] virtual std::string settings() const { return ""; }
   void SetUp() override {
     SystemTest::SetUp();
     if (IsSkipped()) return;
-    stack_ = std::make_unique<Stack>(network());
+    stack_ = std::make_unique<Stack>(network(), settings());
     person_ = &network().add("person");
     ear_ = std::make_unique<Station>(*person_);
     person_->inside([this] {

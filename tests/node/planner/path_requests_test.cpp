@@ -1,4 +1,5 @@
 // What programs can ask of paths beside one, and what the planner bears.
+#include <cmath>
 #include <memory>
 
 #include "planner_station.hpp"
@@ -143,6 +144,137 @@ TEST_F(PlannerOnTheBus, OnAMapThatNobodySpeaksOfNothingNewIsPlanned) {
   sender.reset();
   EXPECT_EQ(ask_after(5, "p2"), "OK");
   EXPECT_EQ(ask_after(10, "p3"), "MAP_STALE");
+}
+
+/// Of robot1, 0.8 x 0.3 m; it turns in place.
+class TruckOnTheBus : public PlannerOnTheBus {
+ protected:
+  TruckOnTheBus() {
+    site_.agents["robot1"] = site_.unlisted;
+    site_.agents["robot1"].footprint = "0.8x0.3";
+    start_with_zones();
+    map_sender_.begin("map");
+    run_seconds(2);
+  }
+  /// Across the hall, but for a gap at the other side.
+  void wall(int bricks) {
+    DenseBrick dense;
+    dense.fill(kFree);
+    for (int y = 0; y < 8; ++y) dense[local_of(VoxelIndex{0, y, 3})] = kOccupied;
+    for (int by = 0; by < bricks; ++by) set({2, by, 0}, Brick::from_dense(dense));
+  }
+};
+
+TEST_F(TruckOnTheBus, GetsAPathOfPosesAndIsToldToStopWhenItDoesNotHold) {
+  ask("p1", Eigen::Vector2d(0.6, 0.4), true);
+  EXPECT_TRUE(answers_.empty()) << "the search runs beside the bus";
+  run_seconds(1);
+  ASSERT_EQ(answers_.size(), 1U);
+  EXPECT_EQ(answers_[0].code, "OK") << answers_[0].message;
+  ASSERT_FALSE(paths_.empty());
+  EXPECT_EQ(paths_[0].footprint.size(), 4U);
+  EXPECT_EQ(paths_[0].turn_radius, 0.0);
+  EXPECT_NEAR(paths_[0].radius, std::hypot(0.4, 0.15), 1e-9);
+  EXPECT_EQ(paths_[0].details.front().yaw, 0.0);
+  wall(1);
+  const std::size_t said = paths_.size();
+  run_seconds(2);
+  std::vector<std::string> heard;
+  for (std::size_t i = said; i < paths_.size(); ++i) {
+    if (heard.empty() || heard.back() != paths_[i].status) heard.push_back(paths_[i].status);
+  }
+  if (heard.front() == "OK") heard.erase(heard.begin());  // said again before the map had come
+  EXPECT_EQ(heard, (std::vector<std::string>{"REPLANNING", "OK"}));
+  double highest = 0;
+  for (const Eigen::Vector3d& p : paths_.back().points) highest = std::max(highest, p.y());
+  EXPECT_GT(highest, 0.8) << "by the gap";
+  wall(2);
+  run_seconds(3);
+  EXPECT_EQ(paths_.back().status, "NO_VALID_PATH") << paths_.back().message;
+}
+
+TEST_F(TruckOnTheBus, CancelEndsASearchAtAnyMoment) {
+  ask("p1", Eigen::Vector2d(0.6, 0.4), true);
+  run_seconds(0.05);  // it has begun, or is about to
+  PathRequest cancel;
+  cancel.id = "c1";
+  cancel.robot = "robot1";
+  cancel.op = PathRequest::Op::kCancel;
+  bus_.publish("in/path_request", encode(cancel, bus_.now()));
+  bus_.deliver();
+  ASSERT_EQ(answers_.size(), 2U);
+  EXPECT_EQ(answers_[0].id, "p1");
+  EXPECT_EQ(answers_[0].code, "CANCELLED");
+  EXPECT_EQ(answers_[1].id, "c1");
+  run_seconds(3);
+  EXPECT_EQ(answers_.size(), 2U);
+  ask("p2", Eigen::Vector2d(0.6, 0.4), true);
+  run_seconds(1);
+  EXPECT_EQ(answers_.back().code, "OK") << "the next is searched for";
+}
+
+TEST_F(TruckOnTheBus, AFootprintThatIsNoneIsAConfigurationThatCannotBeUsed) {
+  site_.agents["robot1"].footprint = "wide";
+  EXPECT_THROW(start_planner(kStart + 1), ConfigError);
+}
+
+TEST_F(TruckOnTheBus, SearchesBesideTheBusAreJoinedAtTheEnd) {
+  // As the process runs it; whichever way the race goes, nothing is left behind.
+  for (int i = 0; i < 20; ++i) {
+    LockstepBus bus(kStart);
+    Counters counters;
+    const PlannerNode node({bus, counters, site_, "planner", kStart}, std::launch::async);
+    BrickSender sender(bus, counters, {.stream = "out/map", .resolution = 0.1, .boot_id = kStart}, map_);
+    ListSender<Zone> zones(bus, counters, "out/zones", 5e6);
+    zones.set({});
+    sender.begin("map");
+    bus.advance_to(bus.now() + 2'000'000);
+    PathRequest request;
+    request.id = "p1";
+    request.robot = "robot1";
+    request.start = Eigen::Vector2d(0.6, 0.4);
+    request.goal = {2.4, 0.4};
+    bus.publish("in/path_request", encode(request, bus.now()));
+    bus.deliver();
+    bus.advance_to(bus.now() + 50'000 * (1 + i % 3));
+  }
+}
+
+TEST_F(PlannerOnTheBus, WhatCannotBeIsAnsweredWithWhy) {
+  start_with_zones();
+  map_sender_.begin("map");
+  run_seconds(2);
+  const auto code = [&](const std::function<void(PathRequest&)>& spoil) {
+    PathRequest request;
+    request.id = "p" + std::to_string(answers_.size());
+    request.robot = "robot1";
+    request.start = Eigen::Vector2d(0.4, 0.8);
+    request.goal = {2.8, 0.8};
+    spoil(request);
+    const std::size_t before = answers_.size();
+    bus_.publish("in/path_request", encode(request, bus_.now()));
+    bus_.deliver();
+    run_seconds(1);
+    EXPECT_EQ(answers_.size(), before + 1);
+    EXPECT_FALSE(answers_.back().message.empty());
+    return answers_.back().code;
+  };
+  EXPECT_EQ(code([](PathRequest&) {}), "OK");
+  EXPECT_EQ(code([](PathRequest& r) { r.goal.x() = NAN; }), "NOT_FINITE");
+  EXPECT_EQ(code([](PathRequest& r) { r.start = Eigen::Vector2d(0, INFINITY); }), "NOT_FINITE");
+  EXPECT_EQ(code([](PathRequest& r) { r.goal.x() = 1e5; }), "NOT_FINITE");
+  EXPECT_EQ(code([](PathRequest& r) { r.goal.x() = 9'999; }), "GOAL_OUTSIDE_MAP");
+  EXPECT_EQ(code([](PathRequest& r) { r.radius = 11; }), "BAD_REQUEST");
+  EXPECT_EQ(code([](PathRequest& r) { r.radius = 1.5; }), "START_CLEARANCE");
+  EXPECT_EQ(code([](PathRequest& r) { r.waypoints.assign(1000, Eigen::Vector2d(1.5, 0.8)); }), "OK");
+  EXPECT_EQ(code([](PathRequest& r) { r.waypoints.assign(1001, Eigen::Vector2d(1.5, 0.8)); }), "TOO_LARGE");
+  EXPECT_EQ(code([](PathRequest& r) { r.footprint = {{1, 1}, {-1, -1}, {1, -1}, {-1, 1}}; }), "BAD_REQUEST");
+  EXPECT_EQ(code([](PathRequest& r) { r.footprint.assign(65, Eigen::Vector2d(1, 1)); }), "TOO_LARGE");
+  EXPECT_EQ(code([](PathRequest& r) { r.footprint = {{2, 1}, {-2, 1}, {-2, -1}, {2, -1}}; }), "START_CLEARANCE");
+  EXPECT_EQ(code([](PathRequest& r) {
+              r.footprint = {{.1, .1}, {-.1, .1}, {0, -.1}}, r.turn_radius = NAN;
+            }),
+            "BAD_REQUEST");
 }
 
 TEST_F(PlannerOnTheBus, TenThousandRequestsASecondAreAllAnswered) {

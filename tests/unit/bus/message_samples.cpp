@@ -47,6 +47,26 @@ Zone zone(const std::string& name, Volume volume) {
   return {name, Zone::Kind::kAllowContact, std::move(volume), some_transform(), "Zoë", kTime, 5, 0, 0};
 }
 
+PathRequest asked_path() {
+  PathRequest request;
+  request.id = "r-6";
+  request.robot = "robot1";
+  request.start = Eigen::Vector2d(1, 2);
+  request.goal = {3, 4};
+  request.radius = 0.4;
+  request.keep_active = true;
+  request.waypoints = {{2, 2}};
+  return request;
+}
+
+PathRequest cancelled_path() {
+  PathRequest request;
+  request.id = "r-7";
+  request.robot = "robot1";
+  request.op = PathRequest::Op::kCancel;
+  return request;
+}
+
 Path no_path() {
   Path path;
   path.id = "r-6";
@@ -180,9 +200,8 @@ const std::vector<MessageSample>& message_samples() {
       sample("map_request_t", MapRequest{"r-4", MapRequest::Op::kLoad, "hall", "concord", false, "robot1"}),
       sample("map_request_t", MapRequest{"r-4", MapRequest::Op::kSave, "hall", "bt", true, ""}),
       sample("map_list_t", MapList{"r-5", {{"a.bt", 100}, {"b.ot", 1LL << 40}}}),
-      sample("path_request_t", PathRequest{"r-6", "robot1", Eigen::Vector2d(1, 2), {3, 4}, 0.4, true, {{2, 2}}}),
-      sample("path_request_t",
-             PathRequest{"r-7", "robot1", std::nullopt, {0, 0}, 0, false, {}, PathRequest::Op::kCancel}),
+      sample("path_request_t", asked_path(),
+      sample("path_request_t", cancelled_path()),
       sample("path_request_t", PathRequest{"r-9",
                                            "robot1",
                                            Eigen::Vector2d(1, 2),

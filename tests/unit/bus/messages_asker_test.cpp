@@ -46,7 +46,10 @@ TEST(MessagesAsker, ATextOverItsLimitIsRefusedToItsAsker) {
   refused(AgentRequest{"r", long_text, AgentRequest::Op::kReset});
   refused(DownsampleRequest{"r", long_text, 1});
   refused(MapRequest{"r", MapRequest::Op::kSave, long_text, "bt", false, ""});
-  refused(PathRequest{"r", long_text, {}, {1, 2}, 0, false, {}});
+  PathRequest path;
+  path.id = "r";
+  path.robot = long_text;
+  refused(path);
 }
 
 TEST(MessagesAsker, WhatIsCutOffIsRefusedToItsAskerOnceTheIdIsThere) {
