@@ -96,6 +96,7 @@ void add_downsample(Program& program);
 void add_publish(Program& program);
 /// map, digest.
 void add_map(Program& program);
+void add_voxelize(Program& program);
 void add_up(Program& program);
 void add_demo(Program& program);
 

@@ -27,6 +27,7 @@ int main(int argc, char** argv) {
   concord::add_downsample(program);
   concord::add_publish(program);
   concord::add_map(program);
+  concord::add_voxelize(program);
   concord::add_up(program);
   concord::add_demo(program);
   concord::add_replay(program);
