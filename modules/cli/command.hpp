@@ -97,6 +97,7 @@ void add_publish(Program& program);
 /// map, digest.
 void add_map(Program& program);
 void add_voxelize(Program& program);
+void add_segment(Program& program);
 void add_up(Program& program);
 void add_demo(Program& program);
 

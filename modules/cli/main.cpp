@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
   concord::add_publish(program);
   concord::add_map(program);
   concord::add_voxelize(program);
+  concord::add_segment(program);
   concord::add_up(program);
   concord::add_demo(program);
   concord::add_replay(program);

@@ -28,8 +28,8 @@ Outcome voxelize(const Options& options, const Common& common) {
   if (const auto fine = checked_resolution(options.resolution); !fine) return fail(fine.error());
   const auto mesh = read_model_file(options.model);
   if (!mesh) return fail(mesh.error());
-  const auto voxels = voxelize(*mesh, {*T, options.scale}, options.resolution,
-                               options.surface_only ? Fill::kSurface : Fill::kSolid);
+  const auto voxels =
+      voxelize(*mesh, {*T, options.scale}, options.resolution, options.surface_only ? Fill::kSurface : Fill::kSolid);
   if (!voxels) return fail(voxels.error());
   BrickMasks all = voxels->surface;
   all.insert(voxels->interior);

@@ -23,8 +23,8 @@ std::int32_t index_in(std::uint64_t crossing, int field) {
 }
 
 /// A line through the centres of column (x, y) lies left of an edge of the triangle, seen from above with its corners
-/// counted against the clock. A line that meets an edge counts as if it stood a little further on x and, far less, on y: so it is on
-/// one side of each edge, and the same side whichever triangle asks.
+/// counted against the clock. A line that meets an edge counts as if it stood a little further on x and, far less, on
+/// y: so it is on one side of each edge, and the same side whichever triangle asks.
 class LeftOfEdge {
  public:
   LeftOfEdge(const Snapped& from, const Snapped& to) : from_(from), ex_(to[0] - from[0]), ey_(to[1] - from[1]) {
@@ -49,7 +49,8 @@ class Crossings {
  public:
   /// Refused: more columns than a model may have.
   [[nodiscard]] Result<void> add(std::array<Snapped, 3> c) {
-    const Int128 turn = Int128{c[1][0] - c[0][0]} * (c[2][1] - c[0][1]) - Int128{c[1][1] - c[0][1]} * (c[2][0] - c[0][0]);
+    const Int128 turn =
+        Int128{c[1][0] - c[0][0]} * (c[2][1] - c[0][1]) - Int128{c[1][1] - c[0][1]} * (c[2][0] - c[0][0]);
     if (turn == 0) return {};  // upright: no line that stands a little aside crosses it
     if (turn < 0) std::swap(c[1], c[2]);
     const auto [low, high] = std::minmax({c[0][0], c[1][0], c[2][0]});
@@ -76,8 +77,7 @@ class Crossings {
     }
     BrickMasks out;
     for (std::size_t i = 0; i + 1 < all_.size(); i += 2) {
-      out.insert_column(index_in(all_[i], 2), index_in(all_[i], 1), index_in(all_[i], 0),
-                        index_in(all_[i + 1], 0) - 1);
+      out.insert_column(index_in(all_[i], 2), index_in(all_[i], 1), index_in(all_[i], 0), index_in(all_[i + 1], 0) - 1);
     }
     return out;
   }

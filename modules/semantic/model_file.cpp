@@ -84,7 +84,8 @@ bool write_all(int to, ByteSpan bytes) {
 
 /// The other process: reads the model, says what came of it, and ends without looking back.
 [[noreturn]] void read_and_tell(const Bytes& bytes, const fs::path& file, const std::string& kind, int to) {
-  for (const int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL, SIGINT, SIGTERM}) (void)std::signal(signal, SIG_DFL);
+  for (const int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL, SIGINT, SIGTERM})
+    (void)std::signal(signal, SIG_DFL);
 #if !defined(__SANITIZE_ADDRESS__)  // whose shadow is more than any limit
   limit(RLIMIT_AS, kMaxModelMemory);
 #endif
@@ -119,8 +120,10 @@ Bytes read_all(int from) {
 Result<TriangleMesh> read_model_file(const fs::path& file) {
   std::string kind = file.extension().string();
   if (!kind.empty()) kind.erase(0, 1);
-  std::ranges::transform(kind, kind.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  if (!is_model_kind(kind)) return refuse(Code::kBadName, file.string() + ": a model must be .glb, .gltf, .obj, .stl or .ply");
+  std::ranges::transform(kind, kind.begin(),
+                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  if (!is_model_kind(kind))
+    return refuse(Code::kBadName, file.string() + ": a model must be .glb, .gltf, .obj, .stl or .ply");
   const auto bytes = read_file(file);
   if (!bytes) return tl::unexpected(bytes.error());
 

@@ -4,13 +4,14 @@
 #include <array>
 #include <cstring>
 #include <memory>
+#include <string_view>
 
-#include <assimp/IOStream.hpp>
-#include <assimp/IOSystem.hpp>
-#include <assimp/Importer.hpp>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
+#include <assimp/IOStream.hpp>
+#include <assimp/IOSystem.hpp>
+#include <assimp/Importer.hpp>
 
 namespace concord {
 namespace {
@@ -52,7 +53,9 @@ class ModelFiles : public Assimp::IOSystem {
   ModelFiles(ByteSpan model, std::string name, const SiblingReader& siblings)
       : model_(model), name_(std::move(name)), siblings_(siblings) {}
 
-  [[nodiscard]] bool Exists(const char* file) const override { return is_model(file) || siblings_(plain(file)).has_value(); }
+  [[nodiscard]] bool Exists(const char* file) const override {
+    return is_model(file) || siblings_(plain(file)).has_value();
+  }
   [[nodiscard]] char getOsSeparator() const override { return '/'; }
   Assimp::IOStream* Open(const char* file, const char*) override {
     if (is_model(file)) return std::make_unique<MemoryStream>(model_).release();
@@ -73,6 +76,29 @@ Eigen::Matrix4d matrix_of(const aiMatrix4x4& m) {
   Eigen::Matrix4d out;
   out << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1, m.d2, m.d3, m.d4;
   return out;
+}
+
+/// Release 5.2 takes one line end off the front of a binary .ply's data, in case the header ended with two bytes: where
+/// the first number begins with that byte, all numbers would be read one byte late. One more in front makes up for it.
+Bytes with_spare_line_end(ByteSpan bytes) {
+  constexpr std::string_view kEnd = "\nend_header\n", kBinary = "\nformat binary";
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  Bytes out(bytes.begin(), bytes.end());
+  const std::size_t end = text.find(kEnd);
+  if (end == std::string_view::npos || text.substr(0, end).find(kBinary) == std::string_view::npos) return out;
+  const std::size_t data = end + kEnd.size();
+  if (data < out.size() && out[data] == '\n') out.insert(out.begin() + static_cast<std::ptrdiff_t>(data), '\n');
+  return out;
+}
+
+bool has_polygons(const aiScene& scene) {
+  for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
+    const aiMesh& mesh = *scene.mMeshes[i];
+    for (unsigned j = 0; j < mesh.mNumFaces; ++j) {
+      if (mesh.mFaces[j].mNumIndices > 3) return true;
+    }
+  }
+  return false;
 }
 
 /// Walks the parts of a scene: each places its meshes, and the parts below it.
@@ -131,15 +157,20 @@ bool is_model_kind(const std::string& kind) { return std::ranges::find(kKinds, k
 Result<TriangleMesh> read_model(ByteSpan bytes, const std::string& kind, const SiblingReader& siblings) {
   if (!is_model_kind(kind)) return refuse(Code::kBadName, "a model must be .glb, .gltf, .obj, .stl or .ply");
   if (bytes.size() > kMaxModelBytes) return refuse(Code::kTooLarge, "the model's file is too large; simplify it");
+  const Bytes mended = kind == "ply" ? with_spare_line_end(bytes) : Bytes{};
+  const ByteSpan model = kind == "ply" ? ByteSpan(mended) : bytes;
   Assimp::Importer importer;
   const std::string name = kModelName + kind;
-  importer.SetIOHandler(std::make_unique<ModelFiles>(bytes, name, siblings).release());  // the importer's from now on
+  importer.SetIOHandler(std::make_unique<ModelFiles>(model, name, siblings).release());  // the importer's from now on
   // Only shapes count. Joining corners would move them: equal ones are found where it matters (is_watertight).
-  importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS,
-                              aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS |
-                                  aiComponent_TEXCOORDS | aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
-                                  aiComponent_TEXTURES | aiComponent_LIGHTS | aiComponent_CAMERAS | aiComponent_MATERIALS);
-  const aiScene* scene = importer.ReadFile(name, aiProcess_RemoveComponent | aiProcess_Triangulate);
+  importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |
+                                                          aiComponent_COLORS | aiComponent_TEXCOORDS |
+                                                          aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
+                                                          aiComponent_TEXTURES | aiComponent_LIGHTS |
+                                                          aiComponent_CAMERAS | aiComponent_MATERIALS);
+  const aiScene* scene = importer.ReadFile(name, aiProcess_RemoveComponent);
+  // Asked to divide what is triangles already, release 5.2 may abort.
+  if (scene != nullptr && has_polygons(*scene)) scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
   if (scene == nullptr || scene->mRootNode == nullptr) {
     return refuse(Code::kMalformed, std::string("the model cannot be read: ") + importer.GetErrorString());
   }

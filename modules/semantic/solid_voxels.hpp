@@ -23,8 +23,8 @@ enum class Fill { kSurface, kSolid };
 /// Where it is not: a voxel that holds no surface is inside when no walk from outside reaches it through faces of
 /// voxels that hold none. So cracks thinner than a voxel do no harm, and an open box stays a box.
 ///
-/// Refused: `check` and `snap`; over kMaxModelVoxels and the caps of surface_of; for a model that is not watertight a box
-/// around it of over kMaxFloodedVoxels (all kTooLarge).
+/// Refused: `check` and `snap`; over kMaxModelVoxels and the caps of surface_of; for a model that is not watertight a
+/// box around it of over kMaxFloodedVoxels (all kTooLarge).
 [[nodiscard]] Result<ModelVoxels> voxelize(const TriangleMesh& mesh, const ModelPlacement& placement, double resolution,
                                            Fill fill);
 

@@ -53,7 +53,8 @@ Slab across_edge(const Snapped& p, const Snapped& q, const Snapped& r, int u, in
 }
 
 std::array<Slab, 3> across_edges(const std::array<Snapped, 3>& c, int u, int v) {
-  return {across_edge(c[0], c[1], c[2], u, v), across_edge(c[1], c[2], c[0], u, v), across_edge(c[2], c[0], c[1], u, v)};
+  return {across_edge(c[0], c[1], c[2], u, v), across_edge(c[1], c[2], c[0], u, v),
+          across_edge(c[2], c[0], c[1], u, v)};
 }
 
 /// The plane of the triangle, as a slab in all three axes.

@@ -20,8 +20,8 @@ inline constexpr std::size_t kMaxModelBricks = 2'000'000;
 ///
 /// Exact: the thirteen axes of Akenine-Moeller's test (Fast 3D triangle-box overlap testing, 2001) in integers, each
 /// solved for a range of voxels instead of asked for every voxel (as Schwarz and Seidel, Fast parallel surface and
-/// solid voxelization, 2010, do). An open side of the voxel turns "touches" into "apart": shrinking the box by any small
-/// amount on its upper sides changes nothing else, and touching only there is lost.
+/// solid voxelization, 2010, do). An open side of the voxel turns "touches" into "apart": shrinking the box by any
+/// small amount on its upper sides changes nothing else, and touching only there is lost.
 void add_surface(const std::array<Snapped, 3>& corners, BrickMasks& out);
 
 /// All triangles of a mesh. Refused (kTooLarge): over kMaxModelColumns or kMaxModelBricks, before they are walked.

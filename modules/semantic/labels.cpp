@@ -1,0 +1,327 @@
+#include "semantic/labels.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace concord {
+namespace {
+
+using Claim = LabelCorrection::Claim;
+using Rename = LabelCorrection::Rename;
+using Reassign = LabelCorrection::Reassign;
+using TakeOff = LabelCorrection::TakeOff;
+using Undo = LabelCorrection::Undo;
+
+std::string words(InstanceId of) {
+  return "instance " + std::to_string(of.instance) + " of class " + std::to_string(of.label);
+}
+
+}  // namespace
+
+struct Labels::Apply {
+  Labels& labels;
+  std::uint32_t step;
+  Made& made;
+  BrickSet& touched;
+
+  void operator()(const Claim& claim) const {
+    Step& kept = labels.steps_[step];
+    kept.is_claim = true;
+    kept.claim = {claim.of, claim.class_name, {}, claim.edit_id};
+    kept.bricks = masks_of(claim.voxels).sorted();
+    if (!claim.class_name.empty()) labels.classes_[claim.of.label].name = claim.class_name;
+    labels.give(claim.of);
+    labels.claims_[claim.of].push_back(step);
+    if (!claim.edit_id.empty()) labels.by_edit_[claim.edit_id].push_back(step);
+    labels.voxels_ += static_cast<std::int64_t>(claim.voxels.size());
+    for (const auto& [index, mask] : kept.bricks) {
+      labels.by_brick_[index].push_back(step);
+      touched.insert(index);
+    }
+    made.of = claim.of;
+    made.count = static_cast<std::int64_t>(claim.voxels.size());
+  }
+  void operator()(const Rename& rename) const {
+    labels.renames_.push_back(step);
+    labels.classes_.at(rename.label).name = rename.name;
+    made.of.label = rename.label;
+  }
+  void operator()(const Reassign& reassign) const {
+    labels.give(reassign.to);
+    labels.changes_[reassign.from].push_back(step);
+    labels.touch(reassign.from, touched);
+    made.of = reassign.to;
+  }
+  void operator()(const TakeOff& take_off) const {
+    labels.changes_[take_off.of].push_back(step);
+    labels.touch(take_off.of, touched);
+    made.of = take_off.of;
+  }
+  void operator()(const Undo& undo) const {
+    const std::uint32_t subject = labels.by_id_.at(undo.correction_id);
+    Step& kept = labels.steps_[subject];
+    kept.active = undo.redo;
+    made.of = labels.made_[subject].of;
+    for (const auto& [index, mask] : kept.bricks) touched.insert(index);
+    if (const auto* reassign = std::get_if<Reassign>(&kept.what)) labels.touch(reassign->from, touched);
+    if (const auto* take_off = std::get_if<TakeOff>(&kept.what); take_off != nullptr && !kept.is_claim) {
+      labels.touch(take_off->of, touched);
+    }
+    for (const auto& [id, name] : labels.names_if(subject, undo.redo)) labels.classes_.at(id).name = name;
+  }
+};
+
+void Labels::apply(const LabelCorrection& correction, BrickSet& touched) {
+  assert(correction.revision > revision() && !by_id_.contains(correction.id));
+  const auto step = static_cast<std::uint32_t>(steps_.size());
+  by_id_[correction.id] = step;
+  made_.push_back({correction.revision, correction.content, {}, 0});
+  steps_.push_back({});
+  if (!std::holds_alternative<Claim>(correction.what)) steps_.back().what = correction.what;
+  std::visit(Apply{*this, step, made_.back(), touched}, correction.what);
+}
+
+void Labels::set_edit(const std::string& edit_id, bool active, BrickSet& touched) {
+  const auto [it, is_new] = edits_.try_emplace(edit_id, active);
+  if (!is_new && it->second == active) return;
+  it->second = active;
+  const auto steps = by_edit_.find(edit_id);
+  if (steps == by_edit_.end()) return;
+  for (const std::uint32_t step : steps->second) {
+    for (const auto& [index, mask] : steps_[step].bricks) touched.insert(index);
+  }
+}
+
+void Labels::give(InstanceId of) {
+  Class& of_class = classes_[of.label];
+  instances_ += of.instance > of_class.instances ? of.instance - of_class.instances : 0;
+  of_class.instances = std::max(of_class.instances, of.instance);
+}
+
+/// All that may change when something happens to an instance, or to a class (instance 0).
+void Labels::touch(InstanceId of, BrickSet& touched) const {
+  if (of.instance != 0) return touched.insert(bricks_of(of));
+  for (std::uint32_t i = 1; i <= classes_.at(of.label).instances; ++i) touched.insert(bricks_of({of.label, i}));
+}
+
+BrickSet Labels::bricks_of(InstanceId of) const {
+  BrickSet out;
+  // What was reassigned to it was claimed for another.
+  std::vector<InstanceId> open{of};
+  std::vector<InstanceId> seen;
+  while (!open.empty()) {
+    const InstanceId at = open.back();
+    open.pop_back();
+    if (std::ranges::find(seen, at) != seen.end()) continue;
+    seen.push_back(at);
+    if (const auto claims = claims_.find(at); claims != claims_.end()) {
+      for (const std::uint32_t step : claims->second) {
+        for (const auto& [index, mask] : steps_[step].bricks) out.insert(index);
+      }
+    }
+    for (const auto& [from, steps] : changes_) {
+      for (const std::uint32_t step : steps) {
+        const auto* reassign = std::get_if<Reassign>(&steps_[step].what);
+        if (reassign != nullptr && reassign->to == at) open.push_back(reassign->from);
+      }
+    }
+  }
+  return out;
+}
+
+std::optional<InstanceId> Labels::holder_of(std::uint32_t claim) const {
+  const Step& step = steps_[claim];
+  if (!step.active) return std::nullopt;
+  if (!step.claim.edit_id.empty()) {
+    const auto edit = edits_.find(step.claim.edit_id);
+    if (edit == edits_.end() || !edit->second) return std::nullopt;
+  }
+  InstanceId holder = step.claim.of;
+  for (std::uint32_t after = claim;;) {
+    // The first active change after it that concerns its holder, or the holder's class.
+    std::optional<std::uint32_t> next;
+    for (const InstanceId key : {holder, InstanceId{holder.label, 0}}) {
+      const auto changes = changes_.find(key);
+      if (changes == changes_.end()) continue;
+      for (auto it = std::ranges::upper_bound(changes->second, after); it != changes->second.end(); ++it) {
+        if (!steps_[*it].active) continue;
+        next = next ? std::min(*next, *it) : *it;
+        break;
+      }
+    }
+    if (!next) return holder;
+    const auto* reassign = std::get_if<Reassign>(&steps_[*next].what);
+    if (reassign == nullptr) return std::nullopt;  // taken off
+    holder = reassign->to;
+    after = *next;
+  }
+}
+
+std::optional<InstanceId> Labels::at(VoxelIndex voxel) const {
+  const int local = local_of(voxel);
+  for (const Share& share : shares(brick_of(voxel))) {
+    if ((share.voxels[local / 64] >> (local % 64) & 1) != 0) return share.of;
+  }
+  return std::nullopt;
+}
+
+std::vector<Labels::Share> Labels::shares(BrickIndex index) const {
+  const auto claims = by_brick_.find(index);
+  if (claims == by_brick_.end()) return {};
+  std::map<InstanceId, VoxelMask> by_holder;
+  VoxelMask taken{};
+  for (auto it = claims->second.rbegin(); it != claims->second.rend(); ++it) {
+    const auto holder = holder_of(*it);
+    if (!holder) continue;
+    const auto& bricks = steps_[*it].bricks;
+    const auto own = std::ranges::lower_bound(bricks, index, {}, [](const auto& entry) { return entry.first; });
+    VoxelMask& mask = by_holder[*holder];
+    for (std::size_t word = 0; word < mask.size(); ++word) {
+      mask[word] |= own->second[word] & ~taken[word];
+      taken[word] |= own->second[word];
+    }
+  }
+  std::vector<Share> out;
+  for (const auto& [of, mask] : by_holder) {
+    if (mask != VoxelMask{}) out.push_back({of, mask});
+  }
+  return out;
+}
+
+const Labels::Made* Labels::find(const std::string& id) const {
+  const auto it = by_id_.find(id);
+  return it != by_id_.end() ? &made_[it->second] : nullptr;
+}
+
+std::optional<ClassId> Labels::class_called(const std::string& name) const {
+  for (const auto& [id, of_class] : classes_) {
+    if (of_class.name == name) return id;
+  }
+  return std::nullopt;
+}
+
+std::vector<BrickIndex> Labels::sorted_bricks() const {
+  std::vector<BrickIndex> out;
+  for (const auto& [index, claims] : by_brick_) out.push_back(index);
+  std::ranges::sort(out);
+  return out;
+}
+
+/// What classes are called if this step is, or is not, active.
+std::map<ClassId, std::string> Labels::names_if(std::uint32_t step, bool active) const {
+  std::map<ClassId, std::string> names;
+  for (const auto& kept : steps_) {
+    if (kept.is_claim && !kept.claim.class_name.empty()) names[kept.claim.of.label] = kept.claim.class_name;
+  }
+  for (const std::uint32_t rename : renames_) {
+    const bool holds = rename == step ? active : steps_[rename].active;
+    const auto& what = std::get<Rename>(steps_[rename].what);
+    if (holds) names[what.label] = what.name;
+  }
+  return names;
+}
+
+Result<Labels::What> Labels::check(const LabelRequest& request) const {
+  switch (request.op) {
+    case LabelRequest::Op::kLabel: return check_claim(request);
+    case LabelRequest::Op::kRename: return check_rename(request);
+    case LabelRequest::Op::kReassign: return check_reassign(request);
+    case LabelRequest::Op::kTakeOff: return check_take_off(request);
+    case LabelRequest::Op::kUndo:
+    case LabelRequest::Op::kRedo: break;
+  }
+  return check_undo(request);
+}
+
+Result<void> Labels::check_instance(InstanceId of) const {
+  const auto it = classes_.find(of.label);
+  if (it == classes_.end()) return refuse(Code::kNotFound, "no class " + std::to_string(of.label) + "; see: concord labels");
+  if (of.instance > it->second.instances) return refuse(Code::kNotFound, "no " + words(of) + "; see: concord labels");
+  return {};
+}
+
+Result<Labels::What> Labels::check_claim(const LabelRequest& request) const {
+  if (request.voxels.empty()) return refuse(Code::kEmpty, "a label needs at least one voxel");
+  if (static_cast<std::int64_t>(request.voxels.size()) > kMaxLabelVoxels) {
+    return refuse(Code::kTooLarge, "one label holds at most " + std::to_string(kMaxLabelVoxels) + " voxels");
+  }
+  if (static_cast<std::int64_t>(request.voxels.size()) > kMaxAllLabelVoxels - voxels_) {
+    return refuse(Code::kTooLarge, "all labels together, undone ones too, hold " + std::to_string(kMaxAllLabelVoxels) + " voxels");
+  }
+  if (!std::ranges::all_of(request.voxels, [](VoxelIndex v) { return in_bounds(v); })) {
+    return refuse(Code::kOutOfBounds, "a voxel lies beyond the map's bounds");
+  }
+  Claim claim{request.of, {}, request.voxels, request.edit_id};
+  if (claim.of.label == 0) {
+    if (!is_title(request.name)) {
+      return refuse(Code::kBadName, "a class's name is 1 to 80 bytes of printable text without slashes");
+    }
+    const auto known = class_called(request.name);
+    if (!known && classes_.size() >= kMaxClasses) {
+      return refuse(Code::kTooLarge, "there are " + std::to_string(kMaxClasses) + " classes already");
+    }
+    claim.of.label = known ? *known : classes_.empty() ? 1 : classes_.rbegin()->first + 1;
+    if (!known) claim.class_name = request.name;
+  } else if (const auto there = check_instance(claim.of); !there) {
+    return tl::unexpected(there.error());
+  }
+  if (claim.of.instance == 0) {
+    if (instances_ >= kMaxInstances) return refuse(Code::kTooLarge, "no more instances can be told apart");
+    const auto it = classes_.find(claim.of.label);
+    claim.of.instance = it != classes_.end() ? it->second.instances + 1 : 1;
+  } else if (const auto there = claim.class_name.empty() ? check_instance(claim.of) : refuse(Code::kNotFound, "a new class has no instance yet"); !there) {
+    return tl::unexpected(there.error());
+  }
+  return claim;
+}
+
+Result<Labels::What> Labels::check_rename(const LabelRequest& request) const {
+  if (const auto there = check_instance({request.of.label, 0}); !there) return tl::unexpected(there.error());
+  if (!is_title(request.name)) {
+    return refuse(Code::kBadName, "a class's name is 1 to 80 bytes of printable text without slashes");
+  }
+  if (class_called(request.name)) return refuse(Code::kExists, "a class " + request.name + " exists");
+  return Rename{request.of.label, request.name};
+}
+
+Result<Labels::What> Labels::check_reassign(const LabelRequest& request) const {
+  if (request.of.instance == 0) return refuse(Code::kBadRequest, "one instance is reassigned, not a class; rename that");
+  if (const auto there = check_instance(request.of); !there) return tl::unexpected(there.error());
+  const auto label = class_called(request.name);
+  if (!label) return refuse(Code::kNotFound, "no class " + request.name + "; label something with it first");
+  InstanceId to{*label, request.to_instance};
+  if (const auto there = check_instance(to); !there) return tl::unexpected(there.error());
+  if (to.instance == 0) {
+    if (instances_ >= kMaxInstances) return refuse(Code::kTooLarge, "no more instances can be told apart");
+    to.instance = classes_.at(*label).instances + 1;
+  }
+  if (to == request.of) return refuse(Code::kConflict, "it is that instance already");
+  return Reassign{request.of, to};
+}
+
+Result<Labels::What> Labels::check_take_off(const LabelRequest& request) const {
+  if (const auto there = check_instance(request.of); !there) return tl::unexpected(there.error());
+  return TakeOff{request.of};
+}
+
+Result<Labels::What> Labels::check_undo(const LabelRequest& request) const {
+  const bool redo = request.op == LabelRequest::Op::kRedo;
+  const auto it = by_id_.find(request.correction_id);
+  if (it == by_id_.end()) return refuse(Code::kNotFound, "no label correction " + request.correction_id);
+  const Step& step = steps_[it->second];
+  if (std::holds_alternative<Undo>(step.what)) return refuse(Code::kBadRequest, "an undo is not undone; redo what it undid");
+  if (step.active == redo) {
+    return refuse(Code::kConflict, request.correction_id + (redo ? " is not undone" : " is undone already"));
+  }
+  if (std::holds_alternative<Rename>(step.what)) {
+    std::vector<std::string> names;
+    for (const auto& [id, name] : names_if(it->second, redo)) names.push_back(name);
+    std::ranges::sort(names);
+    if (std::ranges::adjacent_find(names) != names.end()) {
+      return refuse(Code::kConflict, "another class has that name now; rename it first");
+    }
+  }
+  return Undo{request.correction_id, redo};
+}
+
+}  // namespace concord

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <map>
+#include <optional>
+#include <unordered_map>
+
+#include "core/brick_set.hpp"
+#include "core/error.hpp"
+#include "semantic/brick_masks.hpp"
+#include "semantic/label_corrections.hpp"
+
+namespace concord {
+
+/// What is labelled: the fold of label corrections. `check` says what a request leads to or why it is refused, and
+/// changes nothing; `apply` takes what was checked, and cannot fail.
+///
+/// A label costs what its own bricks cost, however many there are.
+class Labels {
+ public:
+  using What = decltype(LabelCorrection::what);
+
+  [[nodiscard]] std::int64_t revision() const { return made_.empty() ? 0 : made_.back().revision; }
+
+  /// Refused: a name that is none (kBadName) or another class's (kExists); a class, instance or correction that is not
+  /// there (kNotFound); no voxel (kEmpty); voxels out of bounds (kOutOfBounds); an undo of what is undone, or what would
+  /// leave two classes with one name (kConflict); over a cap (kTooLarge).
+  [[nodiscard]] Result<What> check(const LabelRequest& request) const;
+
+  /// Adds the bricks whose labels may change to `touched`. @pre checked in this state; the revision is above all before.
+  void apply(const LabelCorrection& correction, BrickSet& touched);
+
+  /// Whether an edit holds that claims came with (merge's word). What nothing was said of does not hold.
+  void set_edit(const std::string& edit_id, bool active, BrickSet& touched);
+
+  struct Made {
+    std::int64_t revision = 0;
+    std::uint64_t content = 0;
+    InstanceId of;           ///< of a claim or reassignment: what it led to
+    std::int64_t count = 0;  ///< voxels of a claim
+  };
+  /// Null: no correction has this id.
+  [[nodiscard]] const Made* find(const std::string& id) const;
+
+  [[nodiscard]] std::optional<InstanceId> at(VoxelIndex voxel) const;
+
+  struct Share {
+    InstanceId of;
+    VoxelMask voxels;
+  };
+  /// What is claimed in a brick, by ascending instance; no voxel twice.
+  [[nodiscard]] std::vector<Share> shares(BrickIndex index) const;
+
+  struct Class {
+    std::string name;
+    std::uint32_t instances = 0;  ///< ever given
+  };
+  [[nodiscard]] const std::map<ClassId, Class>& classes() const { return classes_; }
+  [[nodiscard]] std::optional<ClassId> class_called(const std::string& name) const;
+
+  /// The bricks in which something was ever claimed for an instance; where it may be now.
+  [[nodiscard]] BrickSet bricks_of(InstanceId of) const;
+  [[nodiscard]] std::vector<BrickIndex> sorted_bricks() const;
+
+ private:
+  struct Step {
+    LabelCorrection::Claim claim;  ///< without its voxels
+    std::vector<std::pair<BrickIndex, VoxelMask>> bricks;
+    What what = LabelCorrection::TakeOff{};  ///< not heeded for a claim
+    bool is_claim = false;
+    bool active = true;
+  };
+
+  struct Apply;
+  [[nodiscard]] Result<What> check_claim(const LabelRequest& request) const;
+  [[nodiscard]] Result<What> check_rename(const LabelRequest& request) const;
+  [[nodiscard]] Result<What> check_reassign(const LabelRequest& request) const;
+  [[nodiscard]] Result<What> check_take_off(const LabelRequest& request) const;
+  [[nodiscard]] Result<What> check_undo(const LabelRequest& request) const;
+  [[nodiscard]] Result<void> check_instance(InstanceId of) const;
+  /// Whose a claim is now; nothing if it does not hold.
+  [[nodiscard]] std::optional<InstanceId> holder_of(std::uint32_t step) const;
+  [[nodiscard]] std::map<ClassId, std::string> names_if(std::uint32_t step, bool active) const;
+  void touch(InstanceId of, BrickSet& touched) const;
+  void give(InstanceId of);
+
+  std::deque<Made> made_;
+  std::map<std::string, std::uint32_t> by_id_;  ///< index into made_ and steps_
+  std::deque<Step> steps_;
+  std::map<ClassId, Class> classes_;
+  std::map<InstanceId, std::vector<std::uint32_t>> claims_;   ///< steps, ascending; by whom they were made for
+  std::map<InstanceId, std::vector<std::uint32_t>> changes_;  ///< TakeOff and Reassign, by what they concern
+  std::map<std::string, std::vector<std::uint32_t>> by_edit_;
+  std::map<std::string, bool> edits_;
+  std::vector<std::uint32_t> renames_;
+  std::unordered_map<BrickIndex, std::vector<std::uint32_t>, IndexHash> by_brick_;  ///< claims, ascending
+  std::size_t instances_ = 0;
+  std::int64_t voxels_ = 0;
+};
+
+}  // namespace concord
