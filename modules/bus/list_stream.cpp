@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "bus/messages_label.hpp"
 #include "bus/pack.hpp"
 
 namespace concord {
@@ -202,7 +203,9 @@ std::int64_t ListReceiver<T>::back_off() {
 
 template class ListSender<Zone>;
 template class ListSender<Lease>;
+template class ListSender<LabelSlot>;
 template class ListReceiver<Zone>;
 template class ListReceiver<Lease>;
+template class ListReceiver<LabelSlot>;
 
 }  // namespace concord

@@ -12,8 +12,8 @@ namespace {
 
 using wire::bad;
 
-/// Of any list: as many as the longest may have items.
-constexpr std::int64_t kMaxParts = kMaxZones;
+/// Of any list: what the longest takes, the label slots.
+constexpr std::int64_t kMaxParts = 8192;
 /// Fingerprint, utime, content, part, parts, count.
 constexpr std::size_t kBeforeItems = 8 + 8 + 8 + 4 + 4 + 4;
 

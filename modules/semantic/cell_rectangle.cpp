@@ -68,23 +68,29 @@ class Strips {
   [[nodiscard]] bool covered(int along, int across) const {
     return swapped_ ? turned_.covered(across, along) : turned_.covered(along, across);
   }
-  /// What hangs together in a strip around a place of it, or near that; small gaps do not part it.
+  /// What hangs together in a strip around a place of it, or near that. Small gaps do not part it, nor does what stands
+  /// on it.
   [[nodiscard]] std::optional<Run> run_at(int along, int around) const {
     std::optional<int> start;
-    for (int d = 0; d <= gap_ && !start; ++d) {
-      if (at(along, around + d)) start = around + d;
-      if (!start && at(along, around - d)) start = around - d;
+    for (const int direction : {1, -1}) {
+      const auto found = first_from(along, around, direction);
+      if (found && (!start || std::abs(*found - around) < std::abs(*start - around))) start = found;
     }
     if (!start) return std::nullopt;
     const int first = end(along, *start, -1), last = end(along, *start, 1);
     return Run{first, last, !covered(along, first - 1) && !covered(along, first - 2),
                !covered(along, last + 1) && !covered(along, last + 2)};
   }
+  [[nodiscard]] std::optional<int> first_from(int along, int around, int direction) const {
+    for (int v = around, misses = 0; misses <= gap_; v += direction) {
+      if (at(along, v)) return v;
+      if (!covered(along, v)) ++misses;
+    }
+    return std::nullopt;
+  }
   [[nodiscard]] int end(int along, int from, int direction) const {
     int last = from;
-    for (int v = from; std::abs(v - last) <= gap_; v += direction) {
-      if (at(along, v)) last = v;
-    }
+    for (auto next = std::optional(from); next; next = first_from(along, last + direction, direction)) last = *next;
     return last;
   }
   [[nodiscard]] int reach(int direction, Run begin) const {

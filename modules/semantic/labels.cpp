@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "core/voxel_runs.hpp"
+
 namespace concord {
 namespace {
 
@@ -11,6 +13,8 @@ using Rename = LabelCorrection::Rename;
 using Reassign = LabelCorrection::Reassign;
 using TakeOff = LabelCorrection::TakeOff;
 using Undo = LabelCorrection::Undo;
+
+constexpr const char* kNoTitle = "a class's name is 1 to 80 bytes of printable text without slashes";
 
 std::string words(InstanceId of) {
   return "instance " + std::to_string(of.instance) + " of class " + std::to_string(of.label);
@@ -94,14 +98,22 @@ void Labels::set_edit(const std::string& edit_id, bool active, BrickSet& touched
 
 void Labels::give(InstanceId of) {
   Class& of_class = classes_[of.label];
-  instances_ += of.instance > of_class.instances ? of.instance - of_class.instances : 0;
+  if (of.instance > of_class.instances) ++instances_;
   of_class.instances = std::max(of_class.instances, of.instance);
 }
 
 /// All that may change when something happens to an instance, or to a class (instance 0).
 void Labels::touch(InstanceId of, BrickSet& touched) const {
   if (of.instance != 0) return touched.insert(bricks_of(of));
-  for (std::uint32_t i = 1; i <= classes_.at(of.label).instances; ++i) touched.insert(bricks_of({of.label, i}));
+  for (auto it = claims_.lower_bound({of.label, 0}); it != claims_.end() && it->first.label == of.label; ++it) {
+    touched.insert(bricks_of(it->first));
+  }
+  for (const auto& [from, steps] : changes_) {
+    for (const std::uint32_t step : steps) {
+      const auto* reassign = std::get_if<Reassign>(&steps_[step].what);
+      if (reassign != nullptr && reassign->to.label == of.label) touched.insert(bricks_of(from));
+    }
+  }
 }
 
 BrickSet Labels::bricks_of(InstanceId of) const {
@@ -221,12 +233,14 @@ std::map<ClassId, std::string> Labels::names_if(std::uint32_t step, bool active)
   return names;
 }
 
-Result<Labels::What> Labels::check(const LabelRequest& request) const {
+Result<Labels::What> Labels::check(const LabelRequest& request, const std::vector<VoxelIndex>& voxels) const {
   switch (request.op) {
-    case LabelRequest::Op::kLabel: return check_claim(request);
+    case LabelRequest::Op::kLabel:
+    case LabelRequest::Op::kRestore: return check_claim(request, voxels);
     case LabelRequest::Op::kRename: return check_rename(request);
     case LabelRequest::Op::kReassign: return check_reassign(request);
     case LabelRequest::Op::kTakeOff: return check_take_off(request);
+    case LabelRequest::Op::kDelete:  // an edit, not a label correction
     case LabelRequest::Op::kUndo:
     case LabelRequest::Op::kRedo: break;
   }
@@ -235,57 +249,72 @@ Result<Labels::What> Labels::check(const LabelRequest& request) const {
 
 Result<void> Labels::check_instance(InstanceId of) const {
   const auto it = classes_.find(of.label);
-  if (it == classes_.end()) return refuse(Code::kNotFound, "no class " + std::to_string(of.label) + "; see: concord labels");
+  if (it == classes_.end())
+    return refuse(Code::kNotFound, "no class " + std::to_string(of.label) + "; see: concord labels");
   if (of.instance > it->second.instances) return refuse(Code::kNotFound, "no " + words(of) + "; see: concord labels");
   return {};
 }
 
-Result<Labels::What> Labels::check_claim(const LabelRequest& request) const {
-  if (request.voxels.empty()) return refuse(Code::kEmpty, "a label needs at least one voxel");
-  if (static_cast<std::int64_t>(request.voxels.size()) > kMaxLabelVoxels) {
-    return refuse(Code::kTooLarge, "one label holds at most " + std::to_string(kMaxLabelVoxels) + " voxels");
-  }
-  if (static_cast<std::int64_t>(request.voxels.size()) > kMaxAllLabelVoxels - voxels_) {
-    return refuse(Code::kTooLarge, "all labels together, undone ones too, hold " + std::to_string(kMaxAllLabelVoxels) + " voxels");
-  }
-  if (!std::ranges::all_of(request.voxels, [](VoxelIndex v) { return in_bounds(v); })) {
+Result<Labels::What> Labels::check_claim(const LabelRequest& request, const std::vector<VoxelIndex>& voxels) const {
+  const auto many = static_cast<std::int64_t>(voxels.size());
+  if (many == 0) return refuse(Code::kEmpty, "nothing is occupied there");
+  if (many > kMaxLabelVoxels) return refuse_too_many(kMaxLabelVoxels);
+  if (many > kMaxAllLabelVoxels - voxels_) return refuse_too_many(kMaxAllLabelVoxels);
+  if (!std::ranges::all_of(voxels, [](VoxelIndex v) { return in_bounds(v); })) {
     return refuse(Code::kOutOfBounds, "a voxel lies beyond the map's bounds");
   }
-  Claim claim{request.of, {}, request.voxels, request.edit_id};
-  if (claim.of.label == 0) {
-    if (!is_title(request.name)) {
-      return refuse(Code::kBadName, "a class's name is 1 to 80 bytes of printable text without slashes");
-    }
-    const auto known = class_called(request.name);
-    if (!known && classes_.size() >= kMaxClasses) {
-      return refuse(Code::kTooLarge, "there are " + std::to_string(kMaxClasses) + " classes already");
-    }
-    claim.of.label = known ? *known : classes_.empty() ? 1 : classes_.rbegin()->first + 1;
-    if (!known) claim.class_name = request.name;
-  } else if (const auto there = check_instance(claim.of); !there) {
-    return tl::unexpected(there.error());
-  }
-  if (claim.of.instance == 0) {
-    if (instances_ >= kMaxInstances) return refuse(Code::kTooLarge, "no more instances can be told apart");
-    const auto it = classes_.find(claim.of.label);
-    claim.of.instance = it != classes_.end() ? it->second.instances + 1 : 1;
-  } else if (const auto there = claim.class_name.empty() ? check_instance(claim.of) : refuse(Code::kNotFound, "a new class has no instance yet"); !there) {
-    return tl::unexpected(there.error());
-  }
+  if (!is_title(request.name)) return refuse(Code::kBadName, kNoTitle);
+  auto claim = request.op == LabelRequest::Op::kRestore ? restored(request) : numbered(request);
+  if (!claim) return tl::unexpected(claim.error());
+  const bool is_new =
+      !classes_.contains(claim->of.label) || claim->of.instance > classes_.at(claim->of.label).instances;
+  if (is_new && instances_ >= kMaxInstances) return refuse(Code::kTooLarge, "no more instances can be told apart");
+  claim->voxels = voxels;
+  return std::move(*claim);
+}
+
+/// The numbers that a label gets.
+Result<Claim> Labels::numbered(const LabelRequest& request) const {
+  Claim claim;
+  const auto known = class_called(request.name);
+  if (!known && classes_.size() >= kMaxClasses) return refuse(Code::kTooLarge, "there are too many classes already");
+  claim.of.label = known ? *known : classes_.empty() ? 1 : classes_.rbegin()->first + 1;
+  if (!known) claim.class_name = request.name;
+  claim.of.instance = request.of.instance;
+  const std::uint32_t given = known ? classes_.at(*known).instances : 0;
+  if (claim.of.instance == 0) claim.of.instance = given + 1;
+  if (request.of.instance > given) return refuse(Code::kNotFound, "no " + words(request.of) + "; see: concord labels");
   return claim;
+}
+
+/// The numbers that a saved cloud says, unless they belong to something else here.
+Result<Claim> Labels::restored(const LabelRequest& request) const {
+  constexpr std::uint32_t kMostNumber = 1U << 30;  // some are left to be given
+  if (request.of.label == 0 || request.of.instance == 0 || request.of.label > kMostNumber ||
+      request.of.instance > kMostNumber) {
+    return refuse(Code::kBadRequest, "to restore a label takes its class's and its own number");
+  }
+  const auto there = classes_.find(request.of.label);
+  const auto named = class_called(request.name);
+  if (there == classes_.end() ? named.has_value() : there->second.name != request.name) {
+    return refuse(Code::kConflict,
+                  "class " + std::to_string(request.of.label) + " is another one here than " + request.name);
+  }
+  if (there == classes_.end() && classes_.size() >= kMaxClasses)
+    return refuse(Code::kTooLarge, "there are too many classes already");
+  return Claim{request.of, there == classes_.end() ? request.name : "", {}, {}};
 }
 
 Result<Labels::What> Labels::check_rename(const LabelRequest& request) const {
   if (const auto there = check_instance({request.of.label, 0}); !there) return tl::unexpected(there.error());
-  if (!is_title(request.name)) {
-    return refuse(Code::kBadName, "a class's name is 1 to 80 bytes of printable text without slashes");
-  }
+  if (!is_title(request.name)) return refuse(Code::kBadName, kNoTitle);
   if (class_called(request.name)) return refuse(Code::kExists, "a class " + request.name + " exists");
   return Rename{request.of.label, request.name};
 }
 
 Result<Labels::What> Labels::check_reassign(const LabelRequest& request) const {
-  if (request.of.instance == 0) return refuse(Code::kBadRequest, "one instance is reassigned, not a class; rename that");
+  if (request.of.instance == 0)
+    return refuse(Code::kBadRequest, "one instance is reassigned, not a class; rename that");
   if (const auto there = check_instance(request.of); !there) return tl::unexpected(there.error());
   const auto label = class_called(request.name);
   if (!label) return refuse(Code::kNotFound, "no class " + request.name + "; label something with it first");
@@ -309,7 +338,8 @@ Result<Labels::What> Labels::check_undo(const LabelRequest& request) const {
   const auto it = by_id_.find(request.correction_id);
   if (it == by_id_.end()) return refuse(Code::kNotFound, "no label correction " + request.correction_id);
   const Step& step = steps_[it->second];
-  if (std::holds_alternative<Undo>(step.what)) return refuse(Code::kBadRequest, "an undo is not undone; redo what it undid");
+  if (std::holds_alternative<Undo>(step.what))
+    return refuse(Code::kBadRequest, "an undo is not undone; redo what it undid");
   if (step.active == redo) {
     return refuse(Code::kConflict, request.correction_id + (redo ? " is not undone" : " is undone already"));
   }

@@ -8,8 +8,8 @@
 
 #include "core/brick_set.hpp"
 #include "core/error.hpp"
+#include "core/label_corrections.hpp"
 #include "semantic/brick_masks.hpp"
-#include "semantic/label_corrections.hpp"
 
 namespace concord {
 
@@ -24,11 +24,13 @@ class Labels {
   [[nodiscard]] std::int64_t revision() const { return made_.empty() ? 0 : made_.back().revision; }
 
   /// Refused: a name that is none (kBadName) or another class's (kExists); a class, instance or correction that is not
-  /// there (kNotFound); no voxel (kEmpty); voxels out of bounds (kOutOfBounds); an undo of what is undone, or what would
-  /// leave two classes with one name (kConflict); over a cap (kTooLarge).
-  [[nodiscard]] Result<What> check(const LabelRequest& request) const;
+  /// there (kNotFound); no voxel (kEmpty); voxels out of bounds (kOutOfBounds); an undo of what is undone, or what
+  /// would leave two classes with one name (kConflict); over a cap (kTooLarge).
+  /// @param voxels what a kLabel or kRestore selects; sorted and unique. @pre not kDelete.
+  [[nodiscard]] Result<What> check(const LabelRequest& request, const std::vector<VoxelIndex>& voxels) const;
 
-  /// Adds the bricks whose labels may change to `touched`. @pre checked in this state; the revision is above all before.
+  /// Adds the bricks whose labels may change to `touched`. @pre checked in this state; the revision is above all
+  /// before.
   void apply(const LabelCorrection& correction, BrickSet& touched);
 
   /// Whether an edit holds that claims came with (merge's word). What nothing was said of does not hold.
@@ -73,7 +75,9 @@ class Labels {
   };
 
   struct Apply;
-  [[nodiscard]] Result<What> check_claim(const LabelRequest& request) const;
+  [[nodiscard]] Result<What> check_claim(const LabelRequest& request, const std::vector<VoxelIndex>& voxels) const;
+  [[nodiscard]] Result<LabelCorrection::Claim> numbered(const LabelRequest& request) const;
+  [[nodiscard]] Result<LabelCorrection::Claim> restored(const LabelRequest& request) const;
   [[nodiscard]] Result<What> check_rename(const LabelRequest& request) const;
   [[nodiscard]] Result<What> check_reassign(const LabelRequest& request) const;
   [[nodiscard]] Result<What> check_take_off(const LabelRequest& request) const;
