@@ -3,6 +3,7 @@
 
 #include "cli/command.hpp"
 #include "cli/replay.hpp"
+#include "cli/semantic_commands.hpp"
 
 int main(int argc, char** argv) {
   // Standard output is for what was asked for.
@@ -29,6 +30,8 @@ int main(int argc, char** argv) {
   concord::add_map(program);
   concord::add_voxelize(program);
   concord::add_segment(program);
+  concord::add_label(program);
+  concord::add_labels(program);
   concord::add_up(program);
   concord::add_demo(program);
   concord::add_replay(program);

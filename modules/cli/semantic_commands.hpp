@@ -4,7 +4,7 @@
 
 namespace concord {
 
-/// label, labels.
+void add_label(Program& program);
 void add_labels(Program& program);
 
 }  // namespace concord

@@ -6,6 +6,7 @@
 #include <set>
 
 #include <pcl/ModelCoefficients.h>
+#include <pcl/console/print.h>
 #include <pcl/point_types.h>
 #include <pcl/segmentation/sac_segmentation.h>
 
@@ -35,6 +36,7 @@ std::optional<Plane> upright_plane(const std::vector<VoxelIndex>& voxels) {
     cloud->emplace_back(static_cast<float>(v.x) + 0.5F, static_cast<float>(v.y) + 0.5F, static_cast<float>(v.z) + 0.5F);
   }
   if (cloud->size() < 3) return std::nullopt;
+  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);  // a face that is none is no error
   pcl::SACSegmentation<pcl::PointXYZ> finder(false);
   finder.setModelType(pcl::SACMODEL_PARALLEL_PLANE);
   finder.setMethodType(pcl::SAC_RANSAC);
