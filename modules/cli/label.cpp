@@ -1,6 +1,7 @@
 // label: what people say of parts of the map.
 
 #include <memory>
+#include <optional>
 
 #include "bus/messages_label.hpp"
 #include "cli/arguments.hpp"
@@ -29,11 +30,17 @@ const std::map<std::string, Op>& ops() {
   return all;
 }
 
+/// Copies of streams; they must live as long as `live` handles messages.
+struct Copies {
+  std::optional<StreamCopy> map;
+  std::optional<ListCopy<LabelSlot>> slots;
+};
+
 /// What one touch selects, in the map as it is now.
-tl::expected<Shape, Failure> touched(Live& live, const std::string& seed) {
+tl::expected<Shape, Failure> touched(Live& live, Copies& copies, const std::string& seed) {
   const auto p = parse_vector(seed);
   if (!p) return fail(p.error());
-  StreamCopy copy(live, "out/map");
+  StreamCopy& copy = copies.map.emplace(live, "out/map");
   if (const auto synced = copy.wait_synced(live); !synced) return tl::unexpected(synced.error());
   const double resolution = live.site().resolution;
   const auto proposal = propose_object(occupied_of(copy.map()), resolution, *p);
@@ -42,16 +49,15 @@ tl::expected<Shape, Failure> touched(Live& live, const std::string& seed) {
 }
 
 /// The number that a class has now.
-tl::expected<ClassId, Failure> class_called(Live& live, const std::string& name) {
-  ListCopy<LabelSlot> slots(live, "out/label_slots");
-  const auto all = slots.wait_synced(live);
+tl::expected<ClassId, Failure> class_called(Live& live, Copies& copies, const std::string& name) {
+  const auto all = copies.slots.emplace(live, "out/label_slots").wait_synced(live);
   if (!all) return tl::unexpected(all.error());
   const auto found = std::ranges::find(*all, name, &LabelSlot::name);
   if (found == all->end()) return fail(Exit::kRefused, "NOT_FOUND", "no class " + name + "; see: concord labels");
   return found->of.label;
 }
 
-tl::expected<void, Failure> fill(const Options& options, Live& live, LabelRequest& request) {
+tl::expected<void, Failure> fill(const Options& options, Live& live, Copies& copies, LabelRequest& request) {
   if (request.op == Op::kUndo || request.op == Op::kRedo) {
     request.correction_id = options.subject;
     return {};
@@ -59,7 +65,7 @@ tl::expected<void, Failure> fill(const Options& options, Live& live, LabelReques
   request.of.instance = options.instance;
   request.to_instance = options.to_instance;
   if (request.op != Op::kLabel) {
-    const auto label = class_called(live, options.subject);
+    const auto label = class_called(live, copies, options.subject);
     if (!label) return tl::unexpected(label.error());
     request.of.label = *label;
     request.name = options.to;
@@ -76,7 +82,7 @@ tl::expected<void, Failure> fill(const Options& options, Live& live, LabelReques
     request.frame = options.selection.frame;
     return {};
   }
-  auto shape = touched(live, options.seed);
+  auto shape = touched(live, copies, options.seed);
   if (!shape) return tl::unexpected(shape.error());
   request.shape = std::move(*shape);
   return {};
@@ -84,12 +90,13 @@ tl::expected<void, Failure> fill(const Options& options, Live& live, LabelReques
 
 Outcome label(const Options& options, const Common& common) {
   Live live(common);
+  Copies copies;
   LabelRequest request;
   request.id = live.id_or_new(options.id);
   request.author = author_or_user(options.author);
   request.op = ops().at(options.op);
   request.utime = live.bus().now();
-  if (const auto filled = fill(options, live, request); !filled) return tl::unexpected(filled.error());
+  if (const auto filled = fill(options, live, copies, request); !filled) return tl::unexpected(filled.error());
   const auto made = std::make_shared<std::optional<LabelInstance>>();
   live.hear<LabelList>("out/label_list", [made, id = request.id](const std::string&, const LabelList& list) {
     if (list.id == id && !list.instances.empty()) *made = list.instances.front();
@@ -119,8 +126,8 @@ void add_label(Program& program) {
       ->required();
   command.add_option("instance", options->instance,
                      "number of the instance; without it a new one (add), or all of the class (take-off, delete)");
-  command.add_option("--to", options->to, "rename: the new name; reassign: the class it is of");
-  command.add_option("--to-instance", options->to_instance, "reassign: its number there; without it a new one");
+  command.add_option("--as", options->to, "rename: the new name; reassign: the class it is of");
+  command.add_option("--as-instance", options->to_instance, "reassign: its number there; without it a new one");
   command.add_option("--seed", options->seed, "\"x y z\": one touch, the object there; see concord segment");
   add_shape_options(command, options->selection);
   command.add_option("--author", options->author, "who asks; without it $USER");

@@ -71,6 +71,7 @@ struct Labels::Apply {
     if (const auto* take_off = std::get_if<TakeOff>(&kept.what); take_off != nullptr && !kept.is_claim) {
       labels.touch(take_off->of, touched);
     }
+    if (!std::holds_alternative<Rename>(kept.what)) return;
     for (const auto& [id, name] : labels.names_if(subject, undo.redo)) labels.classes_.at(id).name = name;
   }
 };

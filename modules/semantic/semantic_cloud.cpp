@@ -150,9 +150,10 @@ SemanticCloud semantic_cloud(const BrickMap& map, const BrickMap& labels, const 
   SemanticCloud out;
   out.resolution = resolution;
   std::map<std::int32_t, InstanceId> by_slot;
+  std::map<ClassId, std::string> names;
   for (const LabelSlot& slot : slots) {
     by_slot[slot.slot] = slot.of;
-    out.classes[slot.of.label] = slot.name;
+    names[slot.of.label] = slot.name;
   }
   std::vector<std::pair<VoxelIndex, LogOdds>> voxels;
   map.for_each_brick([&](BrickIndex index, const Brick& brick) {
@@ -168,6 +169,7 @@ SemanticCloud semantic_cloud(const BrickMap& map, const BrickMap& labels, const 
       if (const auto it = by_slot.find(slot_of_value(label)); it != by_slot.end()) {
         point.label = it->second.label;
         point.instance = it->second.instance;
+        out.classes[point.label] = names.at(point.label);
       }
     }
     out.points.push_back(point);

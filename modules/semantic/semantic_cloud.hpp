@@ -24,8 +24,8 @@ struct SemanticPoint {
 /// The map with its labels as a cloud, and what the numbers of the classes mean.
 struct SemanticCloud {
   double resolution = 0;
-  std::map<ClassId, std::string> classes;
-  std::vector<SemanticPoint> points;  ///< by ascending voxel
+  std::map<ClassId, std::string> classes;  ///< those that have a point
+  std::vector<SemanticPoint> points;       ///< by ascending voxel
   bool operator==(const SemanticCloud&) const = default;
 };
 

@@ -23,8 +23,8 @@ std::uint64_t content_without_time(LabelRequest request) {
 }
 
 std::string words(const LabelInstance& instance) {
-  return instance.name + " " + std::to_string(instance.of.instance) + " (class " + std::to_string(instance.of.label) +
-         ")";
+  const std::string number = instance.of.instance != 0 ? " " + std::to_string(instance.of.instance) : "";
+  return instance.name + number + " (class " + std::to_string(instance.of.label) + ")";
 }
 
 }  // namespace
