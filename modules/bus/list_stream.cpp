@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "bus/messages_asset.hpp"
 #include "bus/messages_label.hpp"
 #include "bus/pack.hpp"
 
@@ -204,8 +205,10 @@ std::int64_t ListReceiver<T>::back_off() {
 template class ListSender<Zone>;
 template class ListSender<Lease>;
 template class ListSender<LabelSlot>;
+template class ListSender<Asset>;
 template class ListReceiver<Zone>;
 template class ListReceiver<Lease>;
 template class ListReceiver<LabelSlot>;
+template class ListReceiver<Asset>;
 
 }  // namespace concord

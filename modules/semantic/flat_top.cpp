@@ -90,7 +90,8 @@ class Growth {
   [[nodiscard]] std::map<Cell, int> rooms_of_all() const {
     std::map<Cell, int> rooms;
     std::deque<Cell> open;
-    for (const auto& [cell, height] : heights_) {
+    for (const auto& entry : heights_) {
+      const Cell& cell = entry.first;  // clang 14 captures no structured binding
       const bool at_edge = std::ranges::any_of(kBeside, [&](const auto& d) {
         return !heights_.contains({cell.first + d.first, cell.second + d.second});
       });
@@ -159,9 +160,10 @@ std::vector<Cell> rests_of(const FlatTop& top, const BrickMasks& occupied, doubl
   };
   std::set<Cell> rest;
   const int most = voxels_in(kRestDepth, resolution);
-  for (const auto& [cell, z] : top.cells) {
-    for (const auto& [dx, dy] : kBeside) {
-      const auto beside = [&](int step) { return Cell{cell.first + step * dx, cell.second + step * dy}; };
+  for (const auto& entry : top.cells) {
+    for (const auto& d : kBeside) {
+      const Cell& cell = entry.first;  // clang 14 captures no structured binding
+      const auto beside = [&](int step) { return Cell{cell.first + step * d.first, cell.second + step * d.second}; };
       int deep = 0;
       while (deep <= most && !top.cells.contains(beside(deep + 1)) && rises(beside(deep + 1))) ++deep;
       if (deep > most) continue;  // more than a back: something stands there

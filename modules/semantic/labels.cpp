@@ -80,7 +80,7 @@ void Labels::apply(const LabelCorrection& correction, BrickSet& touched) {
   assert(correction.revision > revision() && !by_id_.contains(correction.id));
   const auto step = static_cast<std::uint32_t>(steps_.size());
   by_id_[correction.id] = step;
-  made_.push_back({correction.revision, correction.content, {}, 0});
+  made_.push_back({correction.id, correction.author, correction.utime, correction.revision, correction.content, {}, 0});
   steps_.push_back({});
   if (!std::holds_alternative<Claim>(correction.what)) steps_.back().what = correction.what;
   std::visit(Apply{*this, step, made_.back(), touched}, correction.what);
@@ -95,6 +95,27 @@ void Labels::set_edit(const std::string& edit_id, bool active, BrickSet& touched
   for (const std::uint32_t step : steps->second) {
     for (const auto& [index, mask] : steps_[step].bricks) touched.insert(index);
   }
+}
+
+std::vector<Labels::Waiting> Labels::waiting(std::size_t most) const {
+  std::vector<Waiting> out;
+  for (auto it = by_edit_.begin(); it != by_edit_.end() && out.size() < most; ++it) {
+    if (auto one = waiting_for(it->first)) out.push_back(std::move(*one));
+  }
+  return out;
+}
+
+std::optional<Labels::Waiting> Labels::waiting_for(const std::string& edit_id) const {
+  const auto steps = by_edit_.find(edit_id);
+  if (steps == by_edit_.end() || edits_.contains(edit_id)) return std::nullopt;
+  for (const std::uint32_t step : steps->second) {
+    if (!steps_[step].active) continue;
+    BrickMasks voxels;
+    for (const auto& [index, mask] : steps_[step].bricks) voxels.insert(index, mask);
+    const Made& made = made_[step];
+    return Waiting{made.id, edit_id, made.author, made.utime, voxels.voxels()};
+  }
+  return std::nullopt;
 }
 
 void Labels::give(InstanceId of) {

@@ -36,7 +36,23 @@ class Labels {
   /// Whether an edit holds that claims came with (merge's word). What nothing was said of does not hold.
   void set_edit(const std::string& edit_id, bool active, BrickSet& touched);
 
+  /// Whether some claim came with this edit; whether merge has said if it holds.
+  [[nodiscard]] bool is_edit_of_claim(const std::string& edit_id) const { return by_edit_.contains(edit_id); }
+  [[nodiscard]] bool knows_edit(const std::string& edit_id) const { return edits_.contains(edit_id); }
+
+  /// A claim whose edit merge has said nothing of.
+  struct Waiting {
+    std::string request_id, edit_id, author;
+    std::int64_t utime = 0;
+    std::vector<VoxelIndex> voxels;  ///< sorted
+  };
+  /// At most so many; those that are undone wait for nothing.
+  [[nodiscard]] std::vector<Waiting> waiting(std::size_t most) const;
+  [[nodiscard]] std::optional<Waiting> waiting_for(const std::string& edit_id) const;
+
   struct Made {
+    std::string id, author;
+    std::int64_t utime = 0;
     std::int64_t revision = 0;
     std::uint64_t content = 0;
     InstanceId of;           ///< of a claim or reassignment: what it led to

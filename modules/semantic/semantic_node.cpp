@@ -57,7 +57,11 @@ SemanticNode::SemanticNode(const NodeContext& context)
                      .boot_id = context.boot_id},
                     view_.shown()),
       slot_list_(context.bus, context.counters, "out/label_slots", context.site.stream.bytes_per_second),
-      queue_(context.bus, context.site.stream.bytes_per_second) {
+      queue_(context.bus, context.site.stream.bytes_per_second),
+      assets_node_(context, {labels_,
+                             [this](const std::string& id, const std::string& author, std::uint64_t content,
+                                    Labels::What what) { return commit(id, author, content, std::move(what)); },
+                             [this](const BrickSet& touched) { refresh(touched); }}) {
   restore();
   listen_to_the_map();
   Bus& bus = context_.bus;
@@ -111,15 +115,22 @@ void SemanticNode::on_request(const LabelRequest& request) {
   if (request.op == LabelRequest::Op::kDelete) return on_delete(request);
   auto what = check(request);
   if (!what) return replies_.deny(kRequests, request.id, what.error());
-  const LabelCorrection correction{labels_.revision() + 1, request.id, request.author,
-                                   context_.bus.now(),     content,    std::move(*what)};
-  if (const auto stored = store_.put(correction); !stored) return replies_.deny(kRequests, request.id, stored.error());
+  if (const auto done = commit(request.id, request.author, content, std::move(*what)); !done) {
+    return replies_.deny(kRequests, request.id, done.error());
+  }
+  grant(request.id, *labels_.find(request.id), "");
+}
+
+Result<void> SemanticNode::commit(const std::string& id, const std::string& author, std::uint64_t content,
+                                  Labels::What what) {
+  const LabelCorrection correction{labels_.revision() + 1, id, author, context_.bus.now(), content, std::move(what)};
+  if (const auto stored = store_.put(correction); !stored) return stored;
   BrickSet touched;
   labels_.apply(correction, touched);
   refresh(touched);
   label_stream_.send_now();
   has_new_slots_ = true;
-  grant(request.id, *labels_.find(request.id), "");
+  return {};
 }
 
 bool SemanticNode::repeat(const LabelRequest& request, std::uint64_t content) {

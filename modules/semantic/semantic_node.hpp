@@ -9,6 +9,7 @@
 #include "bus/process.hpp"
 #include "bus/replies.hpp"
 #include "bus/reply_queue.hpp"
+#include "semantic/assets_node.hpp"
 #include "semantic/label_view.hpp"
 #include "semantic/labels.hpp"
 #include "semantic/semantic_store.hpp"
@@ -33,6 +34,8 @@ class SemanticNode {
   [[nodiscard]] Result<std::vector<VoxelIndex>> selected(const LabelRequest& request) const;
   [[nodiscard]] Result<Transform> T_map_frame(const WorkFrame& frame) const;
   [[nodiscard]] Result<Labels::What> check(const LabelRequest& request) const;
+  [[nodiscard]] Result<void> commit(const std::string& id, const std::string& author, std::uint64_t content,
+                                    Labels::What what);
   void grant(const std::string& id, const Labels::Made& made, const std::string& message);
   void refresh(const BrickSet& touched);
   void tell_slots();
@@ -51,6 +54,7 @@ class SemanticNode {
   BrickSet dirty_;  ///< the map changed there
   bool has_new_slots_ = true;
   bool begun_ = false;
+  AssetsNode assets_node_;
 };
 
 }  // namespace concord

@@ -1,0 +1,108 @@
+// Translators of assets: core/assets.hpp.
+
+#include "bus/messages_asset.hpp"
+
+#include <cmath>
+
+#include <concord/asset_request_t.hpp>
+#include <concord/assets_t.hpp>
+
+#include "bus/translate_shape.hpp"
+
+namespace concord {
+namespace {
+
+using wire::bad;
+
+constexpr std::int64_t kLatestTime = std::int64_t{1} << 62;
+constexpr std::int64_t kFileLength = 200;
+constexpr std::size_t kBeforeItems = 8 + 8 + 8 + 4 + 4 + 4;
+
+Result<std::string> name_of(const std::string& name) {
+  if (is_name(name)) return name;
+  return refuse(Code::kBadName, "an asset's name is 1 to 40 of A-Z a-z 0-9 . _ -, starting with a letter or digit");
+}
+
+Decoded<Asset> from_wire(const asset_t& in) {
+  wire::Filling<Asset> out({}, {});
+  out.take(&Asset::name, name_of(in.name));
+  out.take(&Asset::class_name, wire::title_of(in.class_name));
+  if (!is_printable(in.file)) out.require(refuse(Code::kBadName, "an asset's file has a name that is none"));
+  out.take(&Asset::file, Result<std::string>(in.file));
+  if (!(in.unit > 0) || !std::isfinite(in.unit)) out.require(refuse(Code::kNotFinite, "an asset's unit is none"));
+  out.take(&Asset::unit, Result<double>(in.unit));
+  return out.done();
+}
+
+}  // namespace
+
+Bytes encode(const AssetRequest& value) {
+  asset_request_t out;
+  out.utime = value.utime;
+  out.request_id = value.id;
+  out.author = value.author;
+  out.asset = value.asset;
+  out.T_map_asset = wire::to_wire(value.T_map_asset);
+  return wire::to_bytes(out);
+}
+
+template <>
+Decoded<AssetRequest> decode<AssetRequest>(std::span<const std::uint8_t> bytes) {
+  static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength), text(wire::kIdLength),
+                                          text(wire::kNameLength), fixed(wire::kTransformBytes)};
+  const auto in = wire::from_bytes<asset_request_t>(bytes, kLayout);
+  if (!in) return bad(in.error());
+  if (!wire::is_request_id(in->request_id)) return wire::bad_id();
+  if (!wire::is_printable(in->author)) return wire::bad_author(in->request_id);
+  wire::Filling<AssetRequest> out({}, in->request_id);
+  if (in->request_id.size() > kMostAssetId)
+    out.require(refuse(Code::kBadRequest, "request id must be at most 70 bytes"));
+  if (in->utime < 0 || in->utime > kLatestTime) {
+    out.require(refuse(Code::kBadRequest, "utime is no time; it must be microseconds since 1970"));
+  }
+  out.take(&AssetRequest::id, Result<std::string>(in->request_id));
+  out.take(&AssetRequest::author, Result<std::string>(in->author));
+  out.take(&AssetRequest::utime, Result<std::int64_t>(in->utime));
+  out.take(&AssetRequest::asset, name_of(in->asset));
+  out.take(&AssetRequest::T_map_asset, wire::from_wire(in->T_map_asset));
+  return out.done();
+}
+
+Bytes encode(const ListPart<Asset>& value, std::int64_t utime) {
+  assets_t out;
+  out.utime = utime;
+  out.content = static_cast<std::int64_t>(value.content);
+  out.part = value.part;
+  out.parts = value.parts;
+  out.count = static_cast<std::int32_t>(value.items.size());
+  for (const Asset& asset : value.items) {
+    auto& one = out.assets.emplace_back();
+    one.name = asset.name;
+    one.class_name = asset.class_name;
+    one.file = asset.file;
+    one.unit = asset.unit;
+  }
+  return wire::to_bytes(out);
+}
+
+template <>
+Decoded<ListPart<Asset>> decode<ListPart<Asset>>(std::span<const std::uint8_t> bytes) {
+  static constexpr WireField kAsset[] = {text(wire::kNameLength), text(wire::kTitleLength), text(kFileLength),
+                                         fixed(8)};
+  static constexpr WireField kLayout[] = {fixed(8 + 8 + 4 + 4), count(kMostInPart), records(kAsset)};
+  const auto in = wire::from_bytes<assets_t>(bytes, kLayout);
+  if (!in) return bad(in.error());
+  if (auto fine = wire::check_part(in->part, in->parts, static_cast<std::int64_t>(kMaxAssets)); !fine)
+    return bad(fine.error());
+  ListPart<Asset> out{static_cast<std::uint64_t>(in->content), in->part, in->parts, {}, {}};
+  for (const auto& one : in->assets) {
+    auto value = from_wire(one);
+    if (!value) return tl::unexpected(value.error());
+    out.items.push_back(std::move(*value));
+  }
+  const auto encoded = bytes.subspan(kBeforeItems);
+  out.encoded.assign(encoded.begin(), encoded.end());
+  return out;
+}
+
+}  // namespace concord

@@ -1,0 +1,179 @@
+#include "semantic/assets_node.hpp"
+
+#include <algorithm>
+
+#include "bus/recent_answers.hpp"
+#include "core/voxel_boxes.hpp"
+#include "semantic/asset_folder.hpp"
+#include "semantic/model_file.hpp"
+#include "semantic/solid_voxels.hpp"
+
+namespace concord {
+namespace {
+
+const std::string kRequests = "in/asset";
+constexpr std::int64_t kPeriod = 1'000'000;
+constexpr int kMostOperations = 10'000;
+constexpr std::size_t kSentAtOnce = 16;
+
+std::uint64_t content_without_time(AssetRequest request) {
+  request.utime = 0;
+  return content_of(encode(request));
+}
+
+}  // namespace
+
+AssetsNode::AssetsNode(const NodeContext& context, Parts parts)
+    : context_(context),
+      parts_(std::move(parts)),
+      replies_(context),
+      list_(context.bus, context.counters, "out/assets", context.site.stream.bytes_per_second) {
+  Bus& bus = context_.bus;
+  listen<AssetRequest>(bus, context_.counters, context_.process, kRequests,
+                       [this](const std::string&, const AssetRequest& request) { on_request(request); });
+  listen<Answer>(bus, context_.counters, context_.process, kAnswers,
+                 [this](const std::string&, const Answer& answer) { on_answer(answer); });
+  listen<ProcessStatus>(bus, context_.counters, context_.process, "out/status/merge",
+                        [this](const std::string&, const ProcessStatus& status) {
+                          const auto it = status.counters.find("edit_revision");
+                          if (it != status.counters.end()) heard_revision_ = std::max(heard_revision_, it->second);
+                        });
+  listen<HistoryPart>(bus, context_.counters, context_.process, "out/history",
+                      [this](const std::string&, const HistoryPart& part) { on_history(part); });
+  list();
+  bus.every(kPeriod, [this] {
+    history_id_.clear();  // what was not answered in a second is asked again
+    ask_history();
+    send_waiting();
+    list();
+  });
+}
+
+void AssetsNode::list() {
+  auto read = read_asset_folder(context_.site.state / "assets");
+  if (!read) return context_.counters.refused("assets", read.error());
+  assets_ = std::move(*read);
+  std::vector<Asset> all;
+  for (const auto& [name, asset] : assets_) all.push_back(asset);
+  list_.set(all);
+}
+
+void AssetsNode::on_request(const AssetRequest& request) {
+  const std::uint64_t content = content_without_time(request);
+  if (const Labels::Made* before = parts_.labels.find(request.id)) {
+    if (before->content != content) {
+      return replies_.deny(kRequests, request.id, {Code::kExists, "another request had this id; ids must be unique"});
+    }
+    if (!parts_.labels.knows_edit(edit_of_asset(request.id))) {
+      asked_.insert(request.id);
+      return send_waiting();
+    }
+    return replies_.grant(request.id, before->revision, before->count, "put in since it was asked before");
+  }
+  auto claim = claim_of(request);
+  if (!claim) return replies_.deny(kRequests, request.id, claim.error());
+  if (const auto done = parts_.commit(request.id, request.author, content, std::move(*claim)); !done) {
+    return replies_.deny(kRequests, request.id, done.error());
+  }
+  asked_.insert(request.id);
+  send_waiting();
+}
+
+Result<LabelCorrection::Claim> AssetsNode::claim_of(const AssetRequest& request) const {
+  const auto it = assets_.find(request.asset);
+  if (it == assets_.end()) return refuse(Code::kNotFound, "no asset " + request.asset + "; see: concord asset list");
+  const Asset& asset = it->second;
+  const auto mesh = read_model_file(context_.site.state / "assets" / asset.file);
+  if (!mesh) return tl::unexpected(mesh.error());
+  const auto voxels = voxelize(*mesh, {request.T_map_asset, asset.unit}, context_.site.resolution, Fill::kSolid);
+  if (!voxels) return tl::unexpected(voxels.error());
+  BrickMasks all = voxels->surface;
+  all.insert(voxels->interior);
+  LabelRequest label;
+  label.name = asset.class_name;
+  auto what = parts_.labels.check(label, all.voxels());
+  if (!what) return tl::unexpected(what.error());
+  auto claim = std::get<LabelCorrection::Claim>(std::move(*what));
+  claim.edit_id = edit_of_asset(request.id);
+  return claim;
+}
+
+/// Merge's word on one of our edits. What it took may have been undone since: its history says.
+void AssetsNode::on_answer(const Answer& answer) {
+  if (answer.process != "merge") return;
+  heard_revision_ = std::max(heard_revision_, answer.revision);
+  if (!answer.ok && answer.code != name(Code::kBusy)) {
+    if (const auto ours = parts_.labels.waiting_for(answer.id)) take_back(*ours, answer);
+  }
+  ask_history();
+}
+
+/// An injection that merge refused is one that nobody made, but its numbers are spent.
+void AssetsNode::take_back(const Labels::Waiting& refused, const Answer& why) {
+  const auto done =
+      parts_.commit(refused.edit_id + ".refused", refused.author, 0, LabelCorrection::Undo{refused.request_id, false});
+  if (!done) return context_.counters.refused("asset_undo", done.error());
+  if (asked_.erase(refused.request_id) == 0) return;
+  answer(context_.bus, {refused.request_id, context_.process, false, why.code, why.message, 0, 0});
+}
+
+void AssetsNode::ask_history() {
+  if (!history_id_.empty() || heard_revision_ <= known_revision_) return;
+  HistoryRequest request;
+  history_id_ = "semantic-" + std::to_string(context_.boot_id) + "-" + std::to_string(known_revision_);
+  history_.clear();
+  request.id = history_id_;
+  request.after_revision = known_revision_;
+  request.most = kMostOperations;
+  context_.bus.publish("in/history_request", encode(request, context_.bus.now()));
+}
+
+void AssetsNode::on_history(const HistoryPart& part) {
+  if (part.id != history_id_) return;
+  if (!history_.empty() && history_.begin()->second.parts != part.parts) history_.clear();
+  history_[part.part] = part;
+  if (static_cast<std::int32_t>(history_.size()) < part.parts) return;
+  const auto parts = std::exchange(history_, {});
+  history_id_.clear();
+  BrickSet touched;
+  for (const auto& [number, one] : parts) {
+    for (const Operation& operation : one.operations) {
+      known_revision_ = std::max(known_revision_, operation.revision);
+      const bool takes_back = operation.kind == Operation::Kind::kUndo,
+                 brings_back = operation.kind == Operation::Kind::kRedo;
+      const std::string& edit = takes_back || brings_back ? operation.subject : operation.id;
+      if (parts_.labels.is_edit_of_claim(edit)) {
+        parts_.labels.set_edit(edit, takes_back ? false : brings_back || operation.active, touched);
+      }
+    }
+  }
+  parts_.refresh(touched);
+  answer_askers();
+  ask_history();  // there may be more
+}
+
+void AssetsNode::answer_askers() {
+  std::erase_if(asked_, [this](const std::string& id) {
+    if (!parts_.labels.knows_edit(edit_of_asset(id))) return false;
+    const Labels::Made& made = *parts_.labels.find(id);
+    const std::string& class_name = parts_.labels.classes().at(made.of.label).name;
+    replies_.grant(id, made.revision, made.count,
+                   class_name + " " + std::to_string(made.of.instance) + " is put in; edit " + edit_of_asset(id));
+    return true;
+  });
+}
+
+/// Not before all that merge has is known: what it took long ago must not be asked again and again.
+void AssetsNode::send_waiting() {
+  if (heard_revision_ < 0 || known_revision_ < heard_revision_) return;
+  for (const Labels::Waiting& waiting : parts_.labels.waiting(kSentAtOnce)) {
+    EditRequest edit;
+    edit.id = waiting.edit_id;
+    edit.author = waiting.author;
+    edit.shape = VoxelList{context_.site.resolution, to_boxes(waiting.voxels)};
+    edit.utime = waiting.utime;  // sent again, it is the same to the byte
+    context_.bus.publish("in/edit", encode(edit));
+  }
+}
+
+}  // namespace concord
