@@ -32,6 +32,7 @@ int main(int argc, char** argv) {
   concord::add_segment(program);
   concord::add_label(program);
   concord::add_labels(program);
+  concord::add_assets(program);
   concord::add_up(program);
   concord::add_demo(program);
   concord::add_replay(program);

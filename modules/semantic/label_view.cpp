@@ -94,7 +94,7 @@ std::vector<VoxelIndex> LabelView::border_of(const std::vector<VoxelIndex>& voxe
     }
   }
   std::ranges::sort(out);
-  out.erase(std::ranges::unique(out).begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
 }
 

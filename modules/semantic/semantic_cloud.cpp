@@ -265,7 +265,7 @@ Result<std::map<InstanceId, std::vector<VoxelIndex>>> instances_of(const Semanti
   }
   for (auto& [of, voxels] : out) {
     std::ranges::sort(voxels);
-    voxels.erase(std::ranges::unique(voxels).begin(), voxels.end());
+    voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
   }
   return out;
 }

@@ -1,5 +1,6 @@
 #include "message_samples.hpp"
 
+#include "bus/messages_asset.hpp"
 #include "bus/messages_label.hpp"
 
 namespace concord::test {
@@ -113,6 +114,8 @@ const std::vector<MessageSample>& message_samples() {
       sample("label_request_t", label(LabelRequest::Op::kRestore, VoxelList{0.05, {{{-3, 0, 1}, {5, 0, 1}}}})),
       sample("label_request_t", label(LabelRequest::Op::kDelete)),
       sample("label_request_t", label(LabelRequest::Op::kUndo)),
+      sample("asset_request_t", AssetRequest{"s-1", "Zoë", "pallet", some_transform(), kTime}),
+      sample("assets_t", ListPart<Asset>{7, 0, 1, {{"pallet", "Palette", "pallet.glb", 0.001}}, {}}),
       sample("label_query_t", LabelQuery{"n-2", LabelQuery::Kind::kWithin, "chair", {1, 2, -3}, 4.5}),
       sample("label_list_t", LabelList{"n-2", 1, 2, {{{3, 1}, "chair", 50, {-4, 0, 0}, {9, 9, 9}, {0.5, 1, 2}}}}),
       sample("label_slots_t", ListPart<LabelSlot>{7, 0, 1, {{0, {3, 1}, "chair"}, {65'534, {9, 2}, "Tür"}}, {}}),
