@@ -14,13 +14,12 @@ namespace {
 
 using wire::bad;
 
-constexpr std::int64_t kLatestTime = std::int64_t{1} << 62;
 constexpr std::int64_t kFileLength = 200;
 constexpr std::size_t kBeforeItems = 8 + 8 + 8 + 4 + 4 + 4;
 
 Result<std::string> name_of(const std::string& name) {
   if (is_name(name)) return name;
-  return refuse(Code::kBadName, "an asset's name is 1 to 40 of A-Z a-z 0-9 . _ -, starting with a letter or digit");
+  return refuse(Code::kBadName, std::string("an asset's name must be ") + kNameRule);
 }
 
 Decoded<Asset> from_wire(const asset_t& in) {
@@ -50,19 +49,14 @@ template <>
 Decoded<AssetRequest> decode<AssetRequest>(std::span<const std::uint8_t> bytes) {
   static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength), text(wire::kIdLength),
                                           text(wire::kNameLength), fixed(wire::kTransformBytes)};
-  const auto in = wire::from_bytes<asset_request_t>(bytes, kLayout);
-  if (!in) return bad(in.error());
-  if (!wire::is_request_id(in->request_id)) return wire::bad_id();
-  if (!wire::is_printable(in->author)) return wire::bad_author(in->request_id);
+  const auto in = wire::request_from_bytes<asset_request_t>(bytes, kLayout);
+  if (!in) return tl::unexpected(in.error());
   wire::Filling<AssetRequest> out({}, in->request_id);
   if (in->request_id.size() > kMostAssetId)
     out.require(refuse(Code::kBadRequest, "request id must be at most 70 bytes"));
-  if (in->utime < 0 || in->utime > kLatestTime) {
-    out.require(refuse(Code::kBadRequest, "utime is no time; it must be microseconds since 1970"));
-  }
   out.take(&AssetRequest::id, Result<std::string>(in->request_id));
-  out.take(&AssetRequest::author, Result<std::string>(in->author));
-  out.take(&AssetRequest::utime, Result<std::int64_t>(in->utime));
+  out.take(&AssetRequest::author, wire::author_of(in->author));
+  out.take(&AssetRequest::utime, wire::time_of(in->utime));
   out.take(&AssetRequest::asset, name_of(in->asset));
   out.take(&AssetRequest::T_map_asset, wire::from_wire(in->T_map_asset));
   return out.done();

@@ -18,7 +18,6 @@ using wire::bad;
 using Op = LabelRequest::Op;
 using Kind = LabelQuery::Kind;
 
-constexpr std::int64_t kLatestTime = std::int64_t{1} << 62;
 constexpr std::int64_t kMaxListParts = 8192;  ///< of kMaxLabelSlots, 64 a part at most, with the longest names
 constexpr std::int64_t kMaxAnswerParts = kMaxLabelSlots;
 constexpr double kMostRadius = 100.0;
@@ -71,7 +70,8 @@ Result<std::string> empty_or_title(const std::string& name) {
 
 template <class Lcm>
 Result<WorkFrame> frame_of(const Lcm& in) {
-  if (!in.frame_agent.empty() && !is_name(in.frame_agent)) return refuse(Code::kBadName, wire::kBadAgent);
+  if (!in.frame_agent.empty() && !is_name(in.frame_agent))
+    return refuse(Code::kBadName, std::string("frame_agent must be empty (the map's frame), or ") + kNameRule);
   if (!in.frame_id.empty() && (in.frame_agent.empty() || !is_name(in.frame_id))) {
     return refuse(Code::kBadFrame, "frame_id must be empty, or a name that comes with frame_agent");
   }
@@ -149,23 +149,18 @@ Decoded<LabelRequest> decode<LabelRequest>(std::span<const std::uint8_t> bytes) 
                                           wire::kShape,
                                           text(wire::kNameLength),
                                           text(wire::kNameLength)};
-  const auto in = wire::from_bytes<label_request_t>(bytes, kLayout);
-  if (!in) return bad(in.error());
-  if (!wire::is_request_id(in->request_id)) return wire::bad_id();
-  if (!wire::is_printable(in->author)) return wire::bad_author(in->request_id);
+  const auto in = wire::request_from_bytes<label_request_t>(bytes, kLayout);
+  if (!in) return tl::unexpected(in.error());
   wire::Filling<LabelRequest> out({}, in->request_id);
-  out.require(in->utime >= 0 && in->utime <= kLatestTime
-                  ? Result<void>()
-                  : refuse(Code::kBadRequest, "utime is no time; it must be microseconds since 1970"));
   out.take(&LabelRequest::id, Result<std::string>(in->request_id));
-  out.take(&LabelRequest::author, Result<std::string>(in->author));
-  out.take(&LabelRequest::utime, Result<std::int64_t>(in->utime));
+  out.take(&LabelRequest::author, wire::author_of(in->author));
+  out.take(&LabelRequest::utime, wire::time_of(in->utime));
   out.take(&LabelRequest::op, from_table(kOps, in->op, "op is none of label_request_t's"));
   out.take(&LabelRequest::name, empty_or_title(in->name));
   out.take(&LabelRequest::of, instance_of(in->label, in->instance));
   out.take(&LabelRequest::to_instance, number_of(in->to_instance));
   const bool undo = in->op == label_request_t::UNDO || in->op == label_request_t::REDO;
-  const bool fits_op = undo ? wire::is_request_id(in->correction_id) : in->correction_id.empty();
+  const bool fits_op = undo ? is_request_id(in->correction_id) : in->correction_id.empty();
   if (!fits_op) out.require(refuse(Code::kBadRequest, "correction_id is for UNDO and REDO alone"));
   out.take(&LabelRequest::correction_id, Result<std::string>(in->correction_id));
   if (in->op == label_request_t::LABEL || in->op == label_request_t::RESTORE) {
@@ -190,9 +185,8 @@ template <>
 Decoded<LabelQuery> decode<LabelQuery>(std::span<const std::uint8_t> bytes) {
   static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength), fixed(1), text(wire::kTitleLength),
                                           fixed(8 * 4)};
-  const auto in = wire::from_bytes<label_query_t>(bytes, kLayout);
-  if (!in) return bad(in.error());
-  if (!wire::is_request_id(in->request_id)) return wire::bad_id();
+  const auto in = wire::request_from_bytes<label_query_t>(bytes, kLayout);
+  if (!in) return tl::unexpected(in.error());
   wire::Filling<LabelQuery> out({}, in->request_id);
   out.take(&LabelQuery::id, Result<std::string>(in->request_id));
   out.take(&LabelQuery::kind, from_table(kKinds, in->kind, "kind is none of label_query_t's"));
@@ -248,7 +242,7 @@ Decoded<LabelList> decode<LabelList>(std::span<const std::uint8_t> bytes) {
                                           records(kInstance)};
   const auto in = wire::from_bytes<label_list_t>(bytes, kLayout);
   if (!in) return bad(in.error());
-  if (!wire::is_printable(in->request_id)) return wire::bad_id();
+  if (!is_printable(in->request_id)) return wire::bad_id();
   if (auto fine = wire::check_part(in->part, in->parts, kMaxAnswerParts); !fine) return bad(fine.error());
   LabelList out{in->request_id, in->part, in->parts, {}};
   for (const auto& one : in->instances) {

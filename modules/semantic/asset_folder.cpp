@@ -4,8 +4,7 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include "core/corrections.hpp"
-#include "core/requests.hpp"
+#include "core/text.hpp"
 
 namespace concord {
 namespace {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "core/text.hpp"
 #include "core/voxel_runs.hpp"
 
 namespace concord {

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "core/octomap_format.hpp"
+#include "core/text.hpp"
 
 namespace concord {
 namespace {
