@@ -40,7 +40,7 @@ Outcome inject(const Options& options, const Common& common) {
   Live live(common);
   const AssetRequest request{live.id_or_new(options.id), author_or_user(options.author), options.asset, *T,
                              live.bus().now()};
-  return print_revision(live.ask("in/asset", encode(request), request.id), common);
+  return print_revision(live.ask("in/asset", request), common);
 }
 
 }  // namespace

@@ -101,7 +101,7 @@ Outcome label(const Options& options, const Common& common) {
   live.hear<LabelList>("out/label_list", [made, id = request.id](const std::string&, const LabelList& list) {
     if (list.id == id && !list.instances.empty()) *made = list.instances.front();
   });
-  const auto answer = live.ask("in/label", encode(request), request.id);
+  const auto answer = live.ask("in/label", request);
   if (!answer) return tl::unexpected(answer.error());
   nlohmann::json object = to_json(*answer);
   if (*made) object["instance"] = to_json(**made, live.site().resolution);

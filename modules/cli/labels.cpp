@@ -89,7 +89,7 @@ Outcome load(const Options& options, Live& live, const Common& common) {
     request.of = of;
     request.shape = VoxelList{cloud->resolution, to_boxes(own)};
     request.utime = live.bus().now();
-    const auto answer = live.ask("in/label", encode(request), request.id);
+    const auto answer = live.ask("in/label", request);
     if (!answer) return tl::unexpected(answer.error());
     voxels += answer->count;
   }

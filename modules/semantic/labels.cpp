@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cassert>
 
-#include "core/text.hpp"
-#include "core/voxel_runs.hpp"
-
 namespace concord {
 namespace {
 
@@ -14,12 +11,6 @@ using Rename = LabelCorrection::Rename;
 using Reassign = LabelCorrection::Reassign;
 using TakeOff = LabelCorrection::TakeOff;
 using Undo = LabelCorrection::Undo;
-
-constexpr const char* kNoTitle = "a class's name is 1 to 80 bytes of printable text without slashes";
-
-std::string words(InstanceId of) {
-  return "instance " + std::to_string(of.instance) + " of class " + std::to_string(of.label);
-}
 
 }  // namespace
 
@@ -254,127 +245,6 @@ std::map<ClassId, std::string> Labels::names_if(std::uint32_t step, bool active)
     if (holds) names[what.label] = what.name;
   }
   return names;
-}
-
-Result<Labels::What> Labels::check(const LabelRequest& request, const std::vector<VoxelIndex>& voxels) const {
-  switch (request.op) {
-    case LabelRequest::Op::kLabel:
-    case LabelRequest::Op::kRestore: return check_claim(request, voxels);
-    case LabelRequest::Op::kRename: return check_rename(request);
-    case LabelRequest::Op::kReassign: return check_reassign(request);
-    case LabelRequest::Op::kTakeOff: return check_take_off(request);
-    case LabelRequest::Op::kDelete:  // an edit, not a label correction
-    case LabelRequest::Op::kUndo:
-    case LabelRequest::Op::kRedo: break;
-  }
-  return check_undo(request);
-}
-
-Result<void> Labels::check_instance(InstanceId of) const {
-  const auto it = classes_.find(of.label);
-  if (it == classes_.end())
-    return refuse(Code::kNotFound, "no class " + std::to_string(of.label) + "; see: concord labels");
-  if (of.instance > it->second.instances) return refuse(Code::kNotFound, "no " + words(of) + "; see: concord labels");
-  return {};
-}
-
-Result<Labels::What> Labels::check_claim(const LabelRequest& request, const std::vector<VoxelIndex>& voxels) const {
-  const auto many = static_cast<std::int64_t>(voxels.size());
-  if (many == 0) return refuse(Code::kEmpty, "nothing is occupied there");
-  if (many > kMaxLabelVoxels) return refuse_too_many(kMaxLabelVoxels);
-  if (many > kMaxAllLabelVoxels - voxels_) return refuse_too_many(kMaxAllLabelVoxels);
-  if (!std::ranges::all_of(voxels, [](VoxelIndex v) { return in_bounds(v); })) {
-    return refuse(Code::kOutOfBounds, "a voxel lies beyond the map's bounds");
-  }
-  if (!is_title(request.name)) return refuse(Code::kBadName, kNoTitle);
-  auto claim = request.op == LabelRequest::Op::kRestore ? restored(request) : numbered(request);
-  if (!claim) return tl::unexpected(claim.error());
-  const bool is_new =
-      !classes_.contains(claim->of.label) || claim->of.instance > classes_.at(claim->of.label).instances;
-  if (is_new && instances_ >= kMaxInstances) return refuse(Code::kTooLarge, "no more instances can be told apart");
-  claim->voxels = voxels;
-  return std::move(*claim);
-}
-
-/// The numbers that a label gets.
-Result<Claim> Labels::numbered(const LabelRequest& request) const {
-  Claim claim;
-  const auto known = class_called(request.name);
-  if (!known && classes_.size() >= kMaxClasses) return refuse(Code::kTooLarge, "there are too many classes already");
-  claim.of.label = known ? *known : classes_.empty() ? 1 : classes_.rbegin()->first + 1;
-  if (!known) claim.class_name = request.name;
-  claim.of.instance = request.of.instance;
-  const std::uint32_t given = known ? classes_.at(*known).instances : 0;
-  if (claim.of.instance == 0) claim.of.instance = given + 1;
-  if (request.of.instance > given) return refuse(Code::kNotFound, "no " + words(request.of) + "; see: concord labels");
-  return claim;
-}
-
-/// The numbers that a saved cloud says, unless they belong to something else here.
-Result<Claim> Labels::restored(const LabelRequest& request) const {
-  constexpr std::uint32_t kMostNumber = 1U << 30;  // some are left to be given
-  if (request.of.label == 0 || request.of.instance == 0 || request.of.label > kMostNumber ||
-      request.of.instance > kMostNumber) {
-    return refuse(Code::kBadRequest, "to restore a label takes its class's and its own number");
-  }
-  const auto there = classes_.find(request.of.label);
-  const auto named = class_called(request.name);
-  if (there == classes_.end() ? named.has_value() : there->second.name != request.name) {
-    return refuse(Code::kConflict,
-                  "class " + std::to_string(request.of.label) + " is another one here than " + request.name);
-  }
-  if (there == classes_.end() && classes_.size() >= kMaxClasses)
-    return refuse(Code::kTooLarge, "there are too many classes already");
-  return Claim{request.of, there == classes_.end() ? request.name : "", {}, {}};
-}
-
-Result<Labels::What> Labels::check_rename(const LabelRequest& request) const {
-  if (const auto there = check_instance({request.of.label, 0}); !there) return tl::unexpected(there.error());
-  if (!is_title(request.name)) return refuse(Code::kBadName, kNoTitle);
-  if (class_called(request.name)) return refuse(Code::kExists, "a class " + request.name + " exists");
-  return Rename{request.of.label, request.name};
-}
-
-Result<Labels::What> Labels::check_reassign(const LabelRequest& request) const {
-  if (request.of.instance == 0)
-    return refuse(Code::kBadRequest, "one instance is reassigned, not a class; rename that");
-  if (const auto there = check_instance(request.of); !there) return tl::unexpected(there.error());
-  const auto label = class_called(request.name);
-  if (!label) return refuse(Code::kNotFound, "no class " + request.name + "; label something with it first");
-  InstanceId to{*label, request.to_instance};
-  if (const auto there = check_instance(to); !there) return tl::unexpected(there.error());
-  if (to.instance == 0) {
-    if (instances_ >= kMaxInstances) return refuse(Code::kTooLarge, "no more instances can be told apart");
-    to.instance = classes_.at(*label).instances + 1;
-  }
-  if (to == request.of) return refuse(Code::kConflict, "it is that instance already");
-  return Reassign{request.of, to};
-}
-
-Result<Labels::What> Labels::check_take_off(const LabelRequest& request) const {
-  if (const auto there = check_instance(request.of); !there) return tl::unexpected(there.error());
-  return TakeOff{request.of};
-}
-
-Result<Labels::What> Labels::check_undo(const LabelRequest& request) const {
-  const bool redo = request.op == LabelRequest::Op::kRedo;
-  const auto it = by_id_.find(request.correction_id);
-  if (it == by_id_.end()) return refuse(Code::kNotFound, "no label correction " + request.correction_id);
-  const Step& step = steps_[it->second];
-  if (std::holds_alternative<Undo>(step.what))
-    return refuse(Code::kBadRequest, "an undo is not undone; redo what it undid");
-  if (step.active == redo) {
-    return refuse(Code::kConflict, request.correction_id + (redo ? " is not undone" : " is undone already"));
-  }
-  if (std::holds_alternative<Rename>(step.what)) {
-    std::vector<std::string> names;
-    for (const auto& [id, name] : names_if(it->second, redo)) names.push_back(name);
-    std::ranges::sort(names);
-    if (std::ranges::adjacent_find(names) != names.end()) {
-      return refuse(Code::kConflict, "another class has that name now; rename it first");
-    }
-  }
-  return Undo{request.correction_id, redo};
 }
 
 }  // namespace concord
