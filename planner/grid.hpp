@@ -7,18 +7,9 @@
 
 #include "core/brick_map.hpp"
 #include "core/error.hpp"
+#include "planner/lattice/cell.hpp"
 
 namespace concord {
-
-/// One cell of the 2D grid: [x r, (x + 1) r) x [y r, (y + 1) r) in the map frame.
-struct Cell {
-  std::int32_t x = 0, y = 0;
-  auto operator<=>(const Cell&) const = default;
-};
-
-struct CellHash {
-  std::size_t operator()(const Cell& c) const { return IndexHash{}(BrickIndex{c.x, c.y, 0}); }
-};
 
 /// The voxels whose centre lies in [zmin, zmax): those with first <= z < last.
 struct Band {

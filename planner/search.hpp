@@ -6,13 +6,9 @@
 
 #include "planner/free_space.hpp"
 #include "planner/region.hpp"
+#include "planner/search/octile.hpp"
 
 namespace concord {
-
-/// Costs are whole numbers, so that sums do not depend on their order. The ratio is a convergent of sqrt(2): it orders
-/// paths as their true lengths do as long as they have fewer than 400,000 diagonal steps.
-inline constexpr std::int64_t kStraight = 470832;
-inline constexpr std::int64_t kDiagonal = 665857;
 
 /// A cell where a path may begin or end, and what it costs to get to it from the exact start (or from it to the goal).
 struct Anchor {

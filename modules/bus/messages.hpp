@@ -9,13 +9,14 @@
 
 #include "bus/bus.hpp"
 #include "bus/counters.hpp"
+#include "core/alignment.hpp"
 #include "core/corrections.hpp"
 #include "core/requests.hpp"
 
 namespace concord {
 
-/// Messages that exist only between processes, as values. Those that people and robots speak are in core/requests.hpp
-/// and core/corrections.hpp.
+/// Messages that exist only between processes, as values. Those that people and robots speak are in core/requests.hpp,
+/// core/corrections.hpp and core/alignment.hpp.
 
 /// See stream.md.
 struct BrickPacket {
@@ -92,6 +93,7 @@ struct MapList {
 
 struct AgentList {
   std::int64_t utime = 0;
+  double resolution = 0;  ///< edge of a voxel everywhere in this site, metres
   std::vector<AgentState> agents;
 };
 
@@ -174,6 +176,9 @@ struct ListRequest {
 [[nodiscard]] Bytes encode(const MapList& value, std::int64_t utime);
 [[nodiscard]] Bytes encode(const PathRequest& value, std::int64_t utime);
 [[nodiscard]] Bytes encode(const Path& value);
+[[nodiscard]] Bytes encode(const AlignRequest& value);
+[[nodiscard]] Bytes encode(const AlignDecision& value);
+[[nodiscard]] Bytes encode(const AlignResult& value);
 [[nodiscard]] Bytes encode(const Answer& value, std::int64_t utime);
 [[nodiscard]] Bytes encode(const AgentList& value);
 [[nodiscard]] Bytes encode(const ProcessStatus& value);
@@ -187,8 +192,8 @@ struct BadMessage {
 template <class T>
 using Decoded = tl::expected<T, BadMessage>;
 
-/// Wire bytes to a checked value: everything core/requests.hpp and core/corrections.hpp promise holds. Defined for each
-/// value type above.
+/// Wire bytes to a checked value: everything core/requests.hpp, core/corrections.hpp and core/alignment.hpp promise
+/// holds. Defined for each value type above.
 template <class T>
 [[nodiscard]] Decoded<T> decode(std::span<const std::uint8_t> bytes);
 
@@ -253,6 +258,12 @@ template <>
 Decoded<PathRequest> decode(std::span<const std::uint8_t> bytes);
 template <>
 Decoded<Path> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<AlignRequest> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<AlignDecision> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<AlignResult> decode(std::span<const std::uint8_t> bytes);
 template <>
 Decoded<Answer> decode(std::span<const std::uint8_t> bytes);
 template <>

@@ -23,8 +23,6 @@ template <class Lcm>
 auto& id_of(Lcm& message) {
   if constexpr (requires { message.request_id; }) {
     return message.request_id;
-  } else if constexpr (requires { message.lease_id; }) {
-    return message.lease_id;
   } else {
     return message.edit_id;
   }
@@ -129,10 +127,15 @@ Result<bool> hold_of(std::int8_t op) {
   return op == lease_request_t::HOLD;
 }
 
+Result<std::string> lease_of(const std::string& lease) {
+  if (is_request_id(lease)) return lease;
+  return refuse(Code::kBadName, std::string("a lease's id must be ") + kIdRule);
+}
+
 Result<std::string> edit_id_of(const undo_t& in) {
   // Not the rule for new ids: whatever an edit was called, it can be taken back.
-  if (!in.edit_id.empty() && is_line(in.edit_id)) return in.edit_id;
-  return refuse(Code::kBadRequest, "edit_id must be one line of 1 to 80 bytes");
+  if (is_kept_id(in.edit_id)) return in.edit_id;
+  return refuse(Code::kBadRequest, std::string("edit_id must be ") + kKeptIdRule);
 }
 
 Result<std::string> frame_id_of(const std::string& frame_id) {
@@ -231,6 +234,7 @@ Decoded<ZoneRequest> decode<ZoneRequest>(std::span<const std::uint8_t> bytes) {
 
 Bytes encode(const LeaseRequest& value) {
   auto out = asked_by<lease_request_t>(value, value.utime);
+  out.lease_id = value.lease;
   out.op = value.hold ? lease_request_t::HOLD : lease_request_t::FREE;
   out.volume = wire::to_wire(value.volume);
   put_frame(value.frame, out);
@@ -239,10 +243,12 @@ Bytes encode(const LeaseRequest& value) {
 
 template <>
 Decoded<LeaseRequest> decode<LeaseRequest>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {record(kAsker), fixed(1), wire::kShape, record(kFrame)};
+  static constexpr WireField kLayout[] = {record(kAsker), text(wire::kIdLength), fixed(1), wire::kShape,
+                                          record(kFrame)};
   const auto in = read<lease_request_t>(bytes, kLayout);
   if (!in) return tl::unexpected(in.error());
   auto out = asked_by<LeaseRequest>(*in);
+  out.take(&LeaseRequest::lease, lease_of(in->lease_id));
   out.take(&LeaseRequest::hold, hold_of(in->op));
   if (in->op != lease_request_t::FREE) out.take(&LeaseRequest::volume, wire::volume_from_wire(in->volume));
   out.take(&LeaseRequest::frame, frame_of(*in));

@@ -12,6 +12,7 @@
 #include <cmath>
 
 #include "bus/translate.hpp"
+#include "core/octomap_format.hpp"
 
 namespace concord {
 namespace {
@@ -214,6 +215,7 @@ Decoded<Answer> decode<Answer>(std::span<const std::uint8_t> bytes) {
 Bytes encode(const AgentList& value) {
   agents_t out;
   out.utime = value.utime;
+  out.resolution = value.resolution;
   out.count = static_cast<std::int32_t>(value.agents.size());
   for (const AgentState& agent : value.agents) out.agents.push_back(to_wire(agent));
   return wire::to_bytes(out);
@@ -223,10 +225,11 @@ template <>
 Decoded<AgentList> decode<AgentList>(std::span<const std::uint8_t> bytes) {
   static constexpr WireField kRecord[] = {text(wire::kNameLength), text(wire::kNameLength), text(wire::kNameLength),
                                           fixed(4 + 1 + wire::kTransformBytes + 8 + 8 + 8 + 1)};
-  static constexpr WireField kLayout[] = {fixed(8), count(kMaxAgents), records(kRecord)};
+  static constexpr WireField kLayout[] = {fixed(8 + 8), count(kMaxAgents), records(kRecord)};
   const auto in = wire::from_bytes<agents_t>(bytes, kLayout);
   if (!in) return bad(in.error());
-  AgentList out{in->utime, {}};
+  if (const auto fine = checked_resolution(in->resolution); !fine) return bad(fine.error());
+  AgentList out{in->utime, in->resolution, {}};
   for (const agent_state_t& agent : in->agents) {
     const auto T = wire::from_wire(agent.T_map_agent);
     if (!T) return bad(T.error());

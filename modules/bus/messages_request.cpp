@@ -104,7 +104,7 @@ Decoded<MapRequest> decode<MapRequest>(std::span<const std::uint8_t> bytes) {
                                           fixed(1), text(wire::kNameLength)};
   const auto in = wire::request_from_bytes<map_request_t>(bytes, kLayout);
   if (!in) return tl::unexpected(in.error());
-  MapRequest out{in->request_id, MapRequest::Op::kList, in->map, in->format, in->overwrite != 0, in->agent};
+  MapRequest out{in->request_id, MapRequest::Op::kList, in->map, in->format, in->overwrite != 0, in->agent, in->utime};
   switch (in->op) {
     case map_request_t::LIST: return out;
     case map_request_t::SAVE: out.op = MapRequest::Op::kSave; break;

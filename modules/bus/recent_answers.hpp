@@ -9,24 +9,29 @@
 
 namespace concord {
 
-/// What was granted lately: a request that comes again (its answer was lost) is answered alike, not done again.
-/// What was refused is not kept: asked again, it may be possible.
+/// What was answered lately: a request that comes again (its answer was lost) is answered alike, not done again.
+/// A refusal holds for the copies that were under way when it was given, or one who was told no would have it done all
+/// the same. Asked again later, it may be possible; who was told kBusy is to ask again at once.
 class RecentAnswers {
  public:
   static constexpr std::size_t kKept = 1000;
+  static constexpr std::int64_t kRefusalHolds = 1'000'000;  ///< microseconds
 
   explicit RecentAnswers(Bus& bus) : bus_(bus) {}
 
-  /// Whether nothing more needs to be done: this request was granted before, and that answer was given once more; or
-  /// its id belongs to another request, and it was refused (EXISTS). `content` tells requests of one id apart.
-  [[nodiscard]] bool repeat(const std::string& id, const std::string& process, std::uint64_t content) const;
+  /// Whether nothing more needs to be done: this request was answered before, and that answer was given once more; or
+  /// its id belongs to another one that was granted, and it was refused (EXISTS). `content` tells requests of one id
+  /// apart, and `asked` (its utime) those that were refused from the same asked anew.
+  [[nodiscard]] bool repeat(const std::string& id, const std::string& process, std::uint64_t content,
+                            std::int64_t asked = 0) const;
 
-  void give(const Answer& value, std::uint64_t content);
+  void give(const Answer& value, std::uint64_t content, std::int64_t asked = 0);
 
  private:
   struct Given {
     Answer answer;
     std::uint64_t content;
+    std::int64_t asked, utime;
   };
 
   Bus& bus_;

@@ -21,9 +21,12 @@ class Replies {
     answer(context_.bus, granted(id, revision, count, message));
   }
   /// Counted by the channel that it was asked on.
-  void deny(const std::string& channel, const std::string& id, const Error& error) const {
+  [[nodiscard]] Answer denied(const std::string& channel, const std::string& id, const Error& error) const {
     context_.counters.refused(channel, error);
-    answer(context_.bus, {id, context_.process, false, name(error.code), error.message, 0, 0});
+    return {id, context_.process, false, name(error.code), error.message, 0, 0};
+  }
+  void deny(const std::string& channel, const std::string& id, const Error& error) const {
+    answer(context_.bus, denied(channel, id, error));
   }
 
  private:

@@ -148,8 +148,8 @@ Result<std::string> title_of(const std::string& name) {
 }
 
 Result<std::string> kept_title_of(const std::string& name) {
-  if (!name.empty() && name.find_first_of("/\\") == name.npos && is_line(name)) return name;
-  return refuse(Code::kBadName, "a zone's name is one line of 1 to 80 bytes without slashes");
+  if (is_kept_title(name)) return name;
+  return refuse(Code::kBadName, std::string("a zone's name is ") + kKeptTitleRule);
 }
 
 std::int8_t to_wire(Zone::Kind kind) {

@@ -30,13 +30,27 @@ Outcome set_weight(const Weighing& weighing, const Common& common) {
   return print_revision(live.ask("in/weight", request), common);
 }
 
-/// "now", microseconds since 1970, or what every other time is given as.
+/// Microseconds since 1970, or what every other time is given as.
 Result<std::int64_t> parse_utime(const std::string& text, std::int64_t now) {
-  if (text == "now") return now;
   std::int64_t utime = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), utime);
   if (error == std::errc() && end == text.data() + text.size() && utime > 0) return utime;
   return parse_time(text, now);
+}
+
+tl::expected<std::int64_t, Failure> time_given(const std::string& text, Live& live) {
+  const auto utime = parse_utime(text, live.bus().now());
+  if (!utime) return fail(utime.error());
+  return *utime;
+}
+
+/// When the robot says where it is next: of a time after its last pose nobody knows yet where it was.
+tl::expected<std::int64_t, Failure> time_of_next_pose(Live& live, const std::string& robot) {
+  const auto utime = std::make_shared<std::optional<std::int64_t>>();  // the subscription outlives this call
+  live.hear<AgentPose>("in/" + robot + "/pose",
+                       [utime](const std::string&, const AgentPose& pose) { *utime = pose.utime; });
+  if (live.wait(live.timeout(), [&] { return utime->has_value(); })) return **utime;
+  return fail(Exit::kNoAnswer, "NO_ANSWER", "nothing is heard of where " + robot + " is; say when it was seen: --at");
 }
 
 Outcome localise(const Sighting& sighting, const Common& common) {
@@ -48,8 +62,8 @@ Outcome localise(const Sighting& sighting, const Common& common) {
   const auto T_frame_base = parse_transform(sighting.pose);
   if (!T_frame_base) return fail(T_frame_base.error());
   Live live(common);
-  const auto utime = parse_utime(sighting.at, live.bus().now());
-  if (!utime) return fail(utime.error());
+  const auto utime = sighting.at == "now" ? time_of_next_pose(live, sighting.robot) : time_given(sighting.at, live);
+  if (!utime) return tl::unexpected(utime.error());
   const LocaliseRequest request{live.id_or_new(sighting.id),
                                 author_or_user(sighting.author),
                                 sighting.robot,
@@ -75,8 +89,8 @@ void add_agent_corrections(Program& program) {
   locate.add_option("pose", sighting->pose, "its base as \"x y z qx qy qz qw\"")->required();
   locate
       .add_option("--at", sighting->at,
-                  "when, within the last 30 s: 2026-11-22T07:15:03.5 (local; or with Z, +01:00), 5s ago, or "
-                  "microseconds since 1970")
+                  "when, within the last 30 s: now (the robot's next pose), 2026-11-22T07:15:03.5 (local; or with Z, "
+                  "+01:00), 5s (ago), or microseconds since 1970")
       ->capture_default_str();
   locate.add_option("--frame", sighting->frame.agent, "the agent in whose frame it was seen; without it the map's");
   locate.add_option("--frame-id", sighting->frame.frame_id,

@@ -15,7 +15,9 @@ Result<std::vector<double>> all_numbers(const std::string& text) {
   for (std::string word; in >> word;) {
     char* end = nullptr;
     const double value = std::strtod(word.c_str(), &end);
-    if (end == word.c_str() || *end != '\0') return refuse(Code::kMalformed, "'" + word + "' is not a number");
+    const bool is_hexadecimal = word.find_first_of("xX") != word.npos;  // "0x10" is a slip of "0 10"
+    if (end == word.c_str() || *end != '\0' || is_hexadecimal)
+      return refuse(Code::kMalformed, "'" + word + "' is not a number");
     if (!std::isfinite(value)) return refuse(Code::kNotFinite, "'" + word + "' is not a finite number");
     numbers.push_back(value);
   }

@@ -92,6 +92,8 @@ void add_goals(Program& program);
 void add_requests(Program& program);
 /// save, load, maps.
 void add_saved_maps(Program& program);
+/// align, alignment, alignments.
+void add_align(Program& program);
 void add_downsample(Program& program);
 void add_publish(Program& program);
 /// map, digest.

@@ -21,7 +21,7 @@ Outcome conflicts(int most, const Common& common) {
   Live live(common);
   const ConflictRequest request{live.new_id(), kMostConflictRegions};
   const auto parts =
-      ask_in_parts<ConflictList>(live, Desk{"in/conflict_request", "merge", "out/conflict_list"}, request);
+      ask_in_parts<ConflictList>(live, Respondent{"in/conflict_request", "merge", "out/conflict_list"}, request);
   if (!parts) return tl::unexpected(parts.error());
   if (const auto taken = live.take_resolution(); !taken) return tl::unexpected(taken.error());
   const Conflicts found = joined(*parts);
@@ -35,7 +35,7 @@ bool same_agents(const ConflictRegion& a, const ConflictRegion& b) {
   return std::ranges::equal(a.claims, b.claims, {}, &ConflictRegion::Claim::agent, &ConflictRegion::Claim::agent);
 }
 
-/// No voxel lies between them, also over an edge or a corner.
+/// Their boxes meet, be it over an edge or a corner: the voxels in them need not.
 bool touch(const ConflictRegion& a, const ConflictRegion& b) {
   return a.min.x <= b.max.x + 1 && b.min.x <= a.max.x + 1 && a.min.y <= b.max.y + 1 && b.min.y <= a.max.y + 1 &&
          a.min.z <= b.max.z + 1 && b.min.z <= a.max.z + 1;

@@ -17,10 +17,10 @@ struct Conflicts {
   bool all = true;                      ///< false: there are more, of tiles that were not listed
 };
 
-/// Joins regions of `parts` (at least one) that touch and are between the same agents, as long as what comes of it is
-/// at most kLongestRegion voxels along each axis: of a wall along a hall it should still be seen where it is.
+/// Joins regions of `parts` (at least one) whose boxes meet and that are between the same agents, as long as what comes
+/// of it is at most kLongestRegion voxels along each axis: of a wall along a hall it should still be seen where it is.
 [[nodiscard]] Conflicts joined(const std::vector<ConflictList>& parts);
-inline constexpr int kLongestRegion = 8 * 32;
+inline constexpr int kLongestRegion = 2 * 32;
 
 /// The first `most`; `resolution` turns voxels into metres.
 [[nodiscard]] nlohmann::json to_json(const Conflicts& conflicts, std::size_t most, double resolution);

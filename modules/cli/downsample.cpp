@@ -41,12 +41,11 @@ Outcome downsample(const Options& options, const Common& common) {
     return fail(Exit::kUnusable, "BAD_NAME", options.out + " must end in .pcd or .csv");
   }
   if (!is_name(options.agent)) return bad_name(options.agent);
-  Live live(common);
-  if (const double voxel = live.site().resolution; !(options.resolution >= voxel)) {
+  if (!(options.resolution > 0)) {
     return fail(Exit::kUnusable, name(Code::kBadResolution),
-                "a cell of " + format_number(options.resolution, 3) + " m is smaller than a voxel; here these have " +
-                    format_number(voxel, 3) + " m");
+                "a cell has a size of more than 0 m, and no less than a voxel");
   }
+  Live live(common);
   const auto points = request_cloud(live, {live.new_id(), options.agent, options.resolution});
   if (!points) return tl::unexpected(points.error());
   const auto written = write_file(options.out, extension == ".csv" ? as_csv(*points) : as_pcd(*points));
@@ -60,7 +59,7 @@ Outcome downsample(const Options& options, const Common& common) {
 
 tl::expected<std::vector<Eigen::Vector3f>, Failure> request_cloud(Live& live, const DownsampleRequest& request) {
   const auto parts =
-      ask_in_parts<Downsampled>(live, Desk{"in/downsample", "ingest", "out/downsampled", kSilence}, request);
+      ask_in_parts<Downsampled>(live, Respondent{"in/downsample", "ingest", "out/downsampled", kSilence}, request);
   if (!parts) return tl::unexpected(parts.error());
   std::vector<Eigen::Vector3f> points;
   for (const Downsampled& part : *parts) points.insert(points.end(), part.points.begin(), part.points.end());

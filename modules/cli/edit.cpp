@@ -67,8 +67,8 @@ void print_edit(const Answer& answer, const std::optional<Operation>& made, doub
 
 /// Whatever an edit was called, it can be taken back.
 Result<void> check_edit_id(const std::string& id) {
-  if (!id.empty() && id.size() <= kMaxIdBytes && is_line(id)) return {};
-  return refuse(Code::kBadName, "an edit's id is one line of 1 to 80 bytes");
+  if (is_kept_id(id)) return {};
+  return refuse(Code::kBadName, std::string("an edit's id is ") + kKeptIdRule);
 }
 
 Outcome edit(const Options& options, const Common& common) {

@@ -3,6 +3,8 @@
 #include <sstream>
 
 #include "cli/map_file.hpp"
+#include "planner/files/map_server.hpp"
+#include "store/whole_file.hpp"
 
 namespace concord {
 namespace {
@@ -55,6 +57,22 @@ Result<void> save_grid(const std::filesystem::path& pgm, const Grid& grid, const
        << extent.min.x * grid.resolution() << ", " << extent.min.y * grid.resolution()
        << ", 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
   return write_file(std::filesystem::path(pgm).replace_extension(".yaml"), yaml.str());
+}
+
+Result<LoadedGrid> load_grid(const std::filesystem::path& yaml) {
+  constexpr std::size_t kMaxYaml = 65'536;
+  const auto text = read_whole_file(yaml, kMaxYaml);
+  if (!text) return tl::unexpected(text.error());
+  const auto info = read_map_server_yaml({reinterpret_cast<const char*>(text->data()), text->size()});
+  if (!info) return refuse(info.error().code, yaml.string() + ": " + info.error().message);
+  const std::filesystem::path pgm = yaml.parent_path() / info->image;
+  const auto bytes = read_whole_file(pgm, kMaxPgmCells + 4096);
+  if (!bytes) return tl::unexpected(bytes.error());
+  auto cells = read_map_server_pgm(*info, *bytes);
+  if (!cells) return refuse(cells.error().code, pgm.string() + ": " + cells.error().message);
+  auto grid = project_map(*cells, info->resolution, 0, info->resolution, 1.0);
+  if (!grid) return tl::unexpected(grid.error());
+  return LoadedGrid{std::move(*grid), std::move(*cells), info->origin};
 }
 
 Result<Grid> project_map(const BrickMap& map, double resolution, double zmin, double zmax, double free_share) {

@@ -22,6 +22,15 @@ struct GridExtent {
 /// Refused: a picture of over 100 million cells (kTooLarge), a name that does not end in .pgm (kBadName), kIo.
 [[nodiscard]] Result<void> save_grid(const std::filesystem::path& pgm, const Grid& grid, const GridExtent& extent);
 
+/// What map_server's files hold. Cells lie in a frame of their own, whose corner is at `origin`.
+struct LoadedGrid {
+  Grid grid;
+  BrickMap cells;  ///< voxels with z = 0
+  Eigen::Vector2d origin;
+};
+/// Refused: see read_map_server_yaml and read_map_server_pgm; kNotFound, kIo.
+[[nodiscard]] Result<LoadedGrid> load_grid(const std::filesystem::path& yaml);
+
 /// The whole map projected. Refused: see make_band.
 [[nodiscard]] Result<Grid> project_map(const BrickMap& map, double resolution, double zmin, double zmax,
                                        double free_share);

@@ -40,7 +40,8 @@ tl::expected<std::vector<Operation>, Failure> request_history(Live& live, Histor
     if (page == 0) return all;
     request.id = live.new_id();
     request.most = static_cast<int>(page);
-    const auto parts = ask_in_parts<HistoryPart>(live, Desk{"in/history_request", "merge", "out/history"}, request);
+    const auto parts =
+        ask_in_parts<HistoryPart>(live, Respondent{"in/history_request", "merge", "out/history"}, request);
     if (!parts) return tl::unexpected(parts.error());
     const std::size_t before = all.size();
     for (const HistoryPart& part : *parts) {

@@ -21,23 +21,26 @@ constexpr double kRenew = 3.0;     // seconds; it ends 10 s after it was held la
 constexpr double kFarewell = 2.0;  // seconds to be freed in, after which it is left to end by itself
 
 struct Options {
-  std::string op, id, author;
+  std::string op, lease, author;
   std::optional<double> seconds;
   SelectionOptions selection;
 };
 
+/// Each time by an id of its own: what a lease is called others may use too, and their answers are not ours.
 tl::expected<Answer, Failure> ask(Live& live, LeaseRequest& request) {
+  request.id = live.new_id();
   request.utime = live.bus().now();
   return live.ask("in/lease", request);
 }
 
-/// Also when a person has ended the program, which no other wait outlasts. Returns whether merge has heard it.
+/// Also when a person has ended the program, which no other wait outlasts. Returns whether it is freed.
 bool free_at_the_end(Live& live, LeaseRequest& request) {
   request.hold = false;
+  request.id = live.new_id();
   request.utime = live.bus().now();
   const auto freed = std::make_shared<bool>(false);  // the subscription outlives this call
   live.hear<Answer>(kAnswers, [freed, id = request.id](const std::string&, const Answer& answer) {
-    *freed = *freed || answer.id == id;
+    *freed = *freed || (answer.ok && answer.id == id);
   });
   const std::int64_t end = request.utime + std::llround(kFarewell * 1e6);
   for (std::int64_t due = 0; !*freed && live.bus().now() < end; live.bus().spin_once(10)) {
@@ -51,21 +54,20 @@ bool free_at_the_end(Live& live, LeaseRequest& request) {
 /// Whether its holder has freed it meanwhile, by another client: to renew it would take it again.
 std::shared_ptr<bool> watch_for_free(Live& live, const LeaseRequest& request) {
   auto freed = std::make_shared<bool>(false);
-  live.hear<LeaseRequest>(
-      "in/lease", [freed, id = request.id, author = request.author](const std::string&, const LeaseRequest& heard) {
-        *freed = *freed || (!heard.hold && heard.id == id && heard.author == author);
-      });
+  live.hear<LeaseRequest>("in/lease", [freed, lease = request.lease, author = request.author](
+                                          const std::string&, const LeaseRequest& heard) {
+    *freed = *freed || (!heard.hold && heard.lease == lease && heard.author == author);
+  });
   return freed;
 }
 
 Outcome hold(const Options& options, LeaseRequest request, const Common& common) {
   Live live(common);
-  request.id = live.id_or_new(request.id);
   if (options.seconds) end_on_signals();
   auto held = ask(live, request);
   if (!held || !options.seconds) return print_answer(held, common);
   if (!common.json) {
-    std::fprintf(stderr, "lease %s is held for %s s; Ctrl-C frees it\n", request.id.c_str(),
+    std::fprintf(stderr, "lease %s is held for %s s; Ctrl-C frees it\n", request.lease.c_str(),
                  format_number(*options.seconds, 0).c_str());
   }
   const auto freed_elsewhere = watch_for_free(live, request);
@@ -81,17 +83,17 @@ Outcome hold(const Options& options, LeaseRequest request, const Common& common)
   if (*freed_elsewhere) {
     return fail(
         Exit::kRefused, "FREED",
-        "lease " + request.id + " was freed by another client of " + request.author + "'s: it is not held any more");
+        "lease " + request.lease + " was freed by another client of " + request.author + "'s: it is not held any more");
   }
-  common.print({{"id", request.id}, {"freed", freed}},
-               "lease " + request.id + (freed ? " is freed" : " ends by itself in some seconds: nobody answered"));
+  common.print({{"id", request.lease}, {"freed", freed}},
+               "lease " + request.lease + (freed ? " is freed" : " ends by itself in some seconds: nobody answered"));
   return Exit::kDone;
 }
 
 Outcome lease(const Options& options, const Common& common) {
-  if (const auto fine = check_id(options.id); !fine) return fail(fine.error());
+  if (const auto fine = check_id(options.lease); !fine) return fail(fine.error());
   LeaseRequest request;
-  request.id = options.id;
+  request.lease = options.lease;
   request.author = author_or_user(options.author);
   request.hold = options.op == "hold";
   request.frame = options.selection.frame;
@@ -100,7 +102,6 @@ Outcome lease(const Options& options, const Common& common) {
       return fail(Exit::kUnusable, "BAD_REQUEST", "lease free takes the id alone");
     }
     Live live(common);
-    request.id = live.id_or_new(request.id);
     return print_answer(ask(live, request), common);
   }
   if (options.seconds && !std::isfinite(*options.seconds)) {  // CLI11 takes NaN for in range
@@ -139,7 +140,7 @@ void add_leases(Program& program) {
   CLI::App& command = program.add("lease", "holds a region while someone works in it: others are refused there",
                                   [options](const Common& common) { return lease(*options, common); });
   command.add_option("op", options->op, "hold for 10 s, or free")->required()->check(CLI::IsMember({"hold", "free"}));
-  command.add_option("id", options->id, "the lease's: held again, it is renewed, and may move")->required();
+  command.add_option("id", options->lease, "the lease's: held again, it is renewed, and may move")->required();
   add_volume_options(command, options->selection);
   command.add_option("--for", options->seconds, "seconds: renews it until then or Ctrl-C, then frees it")
       ->check(CLI::Range(1.0, 86'400.0));

@@ -22,8 +22,7 @@ Live::Live(const Common& common)
   hear<Path>("out/path/.*", [this](const std::string&, Path path) {
     if (is_ours(path.id)) paths_[path.id] = std::move(path);
   });
-  hear<BrickDigest>(StreamChannels("out/map").digest,
-                    [this](const std::string&, const BrickDigest& digest) { resolution_ = digest.resolution; });
+  hear<AgentList>("out/agents", [this](const std::string&, const AgentList& list) { resolution_ = list.resolution; });
 }
 
 tl::expected<void, Failure> Live::take_resolution() {

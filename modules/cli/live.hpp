@@ -43,7 +43,7 @@ class Live {
   [[nodiscard]] double timeout() const { return timeout_; }
 
   /// Makes `site().resolution` the stack's, which may run on another site file: only then are its voxels the metres
-  /// they are taken for. The map's digest says it, each second. Fails with kNoAnswer.
+  /// they are taken for. Merge says it each second. Fails with kNoAnswer.
   [[nodiscard]] tl::expected<void, Failure> take_resolution();
 
   /// An id that nobody else uses.

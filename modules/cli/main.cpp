@@ -25,6 +25,7 @@ int main(int argc, char** argv) {
   concord::add_requests(program);
   concord::add_goals(program);
   concord::add_saved_maps(program);
+  concord::add_align(program);
   concord::add_downsample(program);
   concord::add_publish(program);
   concord::add_map(program);

@@ -41,7 +41,7 @@ class Parts {
 };
 
 /// Where and of whom something is asked that is answered in parts.
-struct Desk {
+struct Respondent {
   std::string channel;
   std::string who;                   ///< the process that answers, for words
   std::string answers;               ///< the channel of the parts
@@ -51,12 +51,12 @@ struct Desk {
 /// Asks until all parts have come, and again only when none has come for a while: a long answer is on its way for
 /// seconds. Fails with what it was refused for, kNoAnswer, or kIncomplete.
 template <class Part, class Request>
-[[nodiscard]] tl::expected<std::vector<Part>, Failure> ask_in_parts(Live& live, const Desk& desk,
+[[nodiscard]] tl::expected<std::vector<Part>, Failure> ask_in_parts(Live& live, const Respondent& respondent,
                                                                     const Request& request) {
   const auto bytes = to_send(request, live.bus().now());
   if (!bytes) return tl::unexpected(bytes.error());
   const auto parts = std::make_shared<Parts<Part>>();  // the subscription outlives this call
-  live.hear<Part>(desk.answers, [parts, id = request.id, &live](const std::string&, Part part) {
+  live.hear<Part>(respondent.answers, [parts, id = request.id, &live](const std::string&, Part part) {
     if (part.id == id) parts->take(std::move(part), live.bus().now());
   });
   const auto is_refused = [&] {
@@ -67,8 +67,8 @@ template <class Part, class Request>
   live.wait(live.timeout(), [&] {
     const std::int64_t now = live.bus().now();
     if (parts->complete() || is_refused()) return true;
-    if (now - std::max(asked, parts->last_heard()) > desk.silence) {
-      live.bus().publish(desk.channel, *bytes);
+    if (now - std::max(asked, parts->last_heard()) > respondent.silence) {
+      live.bus().publish(respondent.channel, *bytes);
       asked = now;
     }
     return false;
@@ -77,7 +77,7 @@ template <class Part, class Request>
   if (!parts->any()) {
     const Answer* answer = live.answer_to(request.id);
     if (answer != nullptr && !answer->ok) return refused(*answer);  // busy all the time
-    return live.no_answer(desk.who);
+    return live.no_answer(respondent.who);
   }
   if (!parts->complete()) {
     return fail(Exit::kIncomplete, "INCOMPLETE", "parts of the answer did not arrive; give a longer --timeout");

@@ -8,6 +8,7 @@
 #include "cli/map_file.hpp"
 #include "cli/numbers.hpp"
 #include "cli/overview.hpp"
+#include "cli/plan_scenario.hpp"
 #include "cli/report.hpp"
 #include "planner/plan.hpp"
 
@@ -15,7 +16,9 @@ namespace concord {
 namespace {
 
 struct Options {
-  std::string map, robot, from, to, out;
+  std::string map, grid, robot, from, to, out;
+  ScenarioOptions scenario;
+  bool any_angle = false, clearance = false;
   std::vector<double> band;
   std::optional<double> radius;  ///< metres
 };
@@ -25,11 +28,17 @@ struct Ends {
   Eigen::Vector2d to;
 };
 
+/// A round robot is as well off in one direction as in another: the yaw that a pose may have is only checked.
+Result<Eigen::Vector2d> parse_place(const std::string& text) {
+  if (const auto pose = parse_numbers(text, 3)) return Eigen::Vector2d((*pose)[0], (*pose)[1]);
+  return parse_point(text);
+}
+
 Result<Ends> parse_ends(const Options& options) {
-  const auto to = parse_point(options.to);
+  const auto to = parse_place(options.to);
   if (!to) return tl::unexpected(to.error());
   if (options.from.empty()) return Ends{std::nullopt, *to};
-  return parse_point(options.from).map([&](const Eigen::Vector2d& from) { return Ends{from, *to}; });
+  return parse_place(options.from).map([&](const Eigen::Vector2d& from) { return Ends{from, *to}; });
 }
 
 /// What a plan on a file is held against: the site's where the command line is silent.
@@ -43,17 +52,39 @@ Terms terms_of(const Options& options, const Site& site) {
           options.radius.value_or(site.unlisted.radius), site.planner.free_share};
 }
 
-Result<void> draw(const Options& options, const Terms& terms, const OctomapImport& loaded, const Ends& ends,
+/// What a path is planned on: `map` is what the picture shows, `origin` where its frame lies in that of the request.
+struct Ground2D {
+  Grid grid;
+  BrickMap map;
+  Eigen::Vector2d origin = Eigen::Vector2d::Zero();
+};
+
+Result<Ground2D> load_ground(const Options& options, const Terms& terms) {
+  if (!options.grid.empty()) {
+    auto loaded = load_grid(options.grid);
+    if (!loaded) return tl::unexpected(loaded.error());
+    return Ground2D{std::move(loaded->grid), std::move(loaded->cells), loaded->origin};
+  }
+  auto loaded = load_map(options.map);
+  if (!loaded) return tl::unexpected(loaded.error());
+  auto grid = project_map(loaded->map, loaded->resolution, terms.zmin, terms.zmax, terms.free_share);
+  if (!grid) return tl::unexpected(grid.error());
+  return Ground2D{std::move(*grid), std::move(loaded->map)};
+}
+
+Result<void> draw(const Options& options, const Terms& terms, const Ground2D& ground, const Ends& ends,
                   const Path& path) {
   Overview overview;
   overview.title = "Path";
-  overview.subtitle = options.map + ", robot radius " + format_number(terms.radius, 2) + " m: " + path.message;
-  overview.resolution = loaded.resolution;
+  overview.subtitle = (options.grid.empty() ? options.map : options.grid) + ", robot radius " +
+                      format_number(terms.radius, 2) + " m: " + path.message;
+  overview.resolution = ground.grid.resolution();
   overview.cut = terms.zmax;
-  overview.map = &loaded.map;
+  overview.map = &ground.map;
   overview.after = to_route(path);
-  overview.start = ends.from;
-  overview.goal = ends.to;
+  for (Eigen::Vector2d& p : overview.after->points) p -= ground.origin;
+  overview.start = *ends.from - ground.origin;
+  overview.goal = ends.to - ground.origin;
   const auto written = write_overview(overview, options.out);
   return written ? Result<void>{} : tl::unexpected(written.error());
 }
@@ -70,25 +101,36 @@ Path to_path(PlanResult result, double floor) {
 }
 
 Outcome plan_on_file(const Options& options, const Ends& ends, const Common& common) {
-  if (!ends.from) return fail(Exit::kUnusable, "USAGE", "on a map file plan needs --from");
+  if (!ends.from) return fail(Exit::kUnusable, "USAGE", "on a file plan needs --from");
   const Terms terms = terms_of(options, common.site());
-  const auto loaded = load_map(options.map);
-  if (!loaded) return fail(loaded.error());
-  const auto grid = project_map(loaded->map, loaded->resolution, terms.zmin, terms.zmax, terms.free_share);
-  if (!grid) return fail(grid.error());
-  const Path path = to_path(plan(*grid, *ends.from, ends.to, terms.radius), terms.zmin);
+  const auto ground = load_ground(options, terms);
+  if (!ground) return fail(ground.error());
+  PlanResult result = plan(ground->grid, *ends.from - ground->origin, ends.to - ground->origin, terms.radius);
+  for (Eigen::Vector2d& p : result.points) p += ground->origin;
+  const Path path = to_path(std::move(result), terms.zmin);
   if (!options.out.empty()) {
-    const auto drawn = draw(options, terms, *loaded, ends, path);
+    const auto drawn = draw(options, terms, *ground, ends, path);
     if (!drawn) return fail(drawn.error());
   }
   return print_path(path, common);
 }
 
+Outcome plan_queries(const Options& options, const Common& common) {
+  ScenarioOptions scenario = options.scenario;
+  scenario.map = options.map;
+  if (options.any_angle) scenario.method = Method::kAnyAngle;
+  if (options.clearance) scenario.method = Method::kClearance;
+  return plan_scenario(scenario, common);
+}
+
 Outcome plan_command(const Options& options, const Common& common) {
+  if (!options.scenario.scenario.empty()) return plan_queries(options, common);
+  if (options.to.empty()) return fail(Exit::kUnusable, "USAGE", "plan needs --to, or --map M.map --scen S.scen");
   const auto ends = parse_ends(options);
   if (!ends) return fail(ends.error());
-  if (!options.map.empty()) return plan_on_file(options, *ends, common);
-  if (options.robot.empty()) return fail(Exit::kUnusable, "USAGE", "plan needs --map FILE or --robot ID");
+  if (!options.map.empty() || !options.grid.empty()) return plan_on_file(options, *ends, common);
+  if (!options.out.empty()) return fail(Exit::kUnusable, "USAGE", "--out needs --map FILE or --grid FILE");
+  if (options.robot.empty()) return fail(Exit::kUnusable, "USAGE", "plan needs --map FILE, --grid FILE or --robot ID");
   PathRequest request;
   request.robot = options.robot;
   request.start = ends->from;
@@ -103,16 +145,25 @@ void add_plan(Program& program) {
   auto options = std::make_shared<Options>();
   CLI::App& command = program.add("plan", "a path for a round robot: on a map file, or from the running planner",
                                   [options](const Common& common) { return plan_command(*options, common); });
-  auto* map = command.add_option("--map", options->map, ".bt or .ot; without it the running planner is asked");
-  command.add_option("--robot", options->robot, "the robot whose pose and radius the planner uses")->excludes(map);
+  auto* map = command.add_option("--map", options->map, ".bt or .ot; with --scen a .map of movingai.com");
+  auto* grid = command.add_option("--grid", options->grid, "map_server's .yaml")->excludes(map);
+  auto* scenario =
+      command.add_option("--scen", options->scenario.scenario, "asks all queries of a .scen, times them")->needs(map);
+  command.add_option("--paths", options->scenario.paths, "writes the paths found, one JSON a line")->needs(scenario);
+  auto* any_angle = command.add_flag("--any-angle", options->any_angle, "the shortest at any angle")->needs(scenario);
+  command.add_flag("--clearance", options->clearance, "keeping away from walls")->needs(scenario)->excludes(any_angle);
+  command.add_option("--robot", options->robot, "the robot whose pose and radius the planner uses")
+      ->excludes(map)
+      ->excludes(grid);
   command.add_option("--band", options->band, "zmin zmax, metres; with --map; without it the site file's")
       ->expected(2)
       ->needs(map);
-  command.add_option("--from", options->from, "\"x y\"; without it the robot's last pose");
-  command.add_option("--to", options->to, "\"x y\", map frame, metres")->required();
+  command.add_option("--from", options->from, "\"x y\" or \"x y yaw\"; without it the robot's last pose")
+      ->excludes(scenario);
+  command.add_option("--to", options->to, "\"x y\" or \"x y yaw\", map frame, metres")->excludes(scenario);
   command.add_option("--radius", options->radius, "of the robot, metres; without it the site file's")
       ->check(kRobotRadius);
-  command.add_option("--out", options->out, "writes a picture (.png); with --map")->needs(map);
+  command.add_option("--out", options->out, "writes a picture (.png); with --map or --grid")->excludes(scenario);
 }
 
 }  // namespace concord

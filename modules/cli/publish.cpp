@@ -22,7 +22,13 @@ struct Options {
   std::string frame = "file";
 };
 
-Outcome print_sent(const Common& common, const Options& options, std::int64_t known, std::int64_t bytes) {
+Outcome print_sent(const Common& common, const Options& options, const Delivery& delivery, std::int64_t known,
+                   std::int64_t bytes) {
+  if (delivery.disk_fails()) {
+    return fail(Exit::kIncomplete, name(Code::kIo),
+                options.agent + ": " + format_count(known) +
+                    " voxels are with the stack in memory only: ingest cannot write, and says why; is its disk full?");
+  }
   common.print({{"agent", options.agent}, {"known", known}, {"bytes_sent", bytes}},
                options.agent + ": " + format_count(known) + " voxels are with the stack (on its disk within 5 s), " +
                    format_kilobytes(bytes) + " sent");
@@ -59,7 +65,7 @@ Outcome publish_bricks(Live& live, const Options& options, const BrickMap& map, 
       live.timeout(), [&] { return published.moves(); }, over);
   if (published.was_reset()) return frame_is_over(options);
   if (!published.arrived()) return not_arrived(options, published.delivery());
-  return print_sent(common, options, published.known(), published.bytes_sent());
+  return print_sent(common, options, published.delivery(), published.known(), published.bytes_sent());
 }
 
 /// One message; sent again every few seconds, since a large one loses a fragment easily.
@@ -86,7 +92,7 @@ Outcome publish_octomap(Live& live, const Options& options, const OctomapImport&
   live.wait_while_moving(
       live.timeout(), [&] { return delivery.moves(); }, over);
   if (!delivery.arrived()) return not_arrived(options, delivery);
-  return print_sent(common, options, static_cast<std::int64_t>(made->map.known_count()), sent);
+  return print_sent(common, options, delivery, static_cast<std::int64_t>(made->map.known_count()), sent);
 }
 
 Outcome publish(const Options& options, const Common& common) {
@@ -135,6 +141,7 @@ void Delivery::on_agents(const AgentList& list) {
 void Delivery::on_status(const ProcessStatus& status) {
   const std::string ours = "refused.in/" + agent_;
   for (const auto& [counter, count] : status.counters) {
+    if (counter == "disk_fails") disk_fails_ = count != 0;
     const std::size_t dot = counter.rfind('.');
     const std::string where = counter.substr(0, dot);
     if (where != ours && !where.starts_with(ours + "/")) continue;

@@ -22,6 +22,8 @@ class Delivery {
   /// How often ingest has refused something of this agent since something came in, and why at last.
   [[nodiscard]] std::int64_t refusals() const { return refusals_; }
   [[nodiscard]] const std::string& refusal() const { return refusal_; }
+  /// Ingest could not write last.
+  [[nodiscard]] bool disk_fails() const { return disk_fails_; }
 
  private:
   void on_digest(const BrickDigest& digest);
@@ -41,6 +43,7 @@ class Delivery {
   std::map<std::string, std::int64_t> refused_;  ///< as ingest counted last
   std::int64_t refusals_ = 0;
   std::string refusal_;
+  bool disk_fails_ = false;
 };
 
 /// A map file that plays a robot: its submap goes the way a robot's would.

@@ -9,7 +9,7 @@
 
 namespace concord {
 
-inline constexpr const char* kStackProcesses[] = {"ingest", "merge", "planner", "semantic"};
+inline constexpr const char* kStackProcesses[] = {"ingest", "merge", "align", "planner", "semantic"};
 
 /// What runs as one stack.
 struct StackSpec {

@@ -20,11 +20,6 @@ Result<void> check_transform(const Transform& T) {
   return {};
 }
 
-/// What was once taken from a person stays loadable: the rule for new texts (core/text.hpp) has been narrower since.
-bool is_kept_text(const std::string& text, std::size_t least, std::size_t most) {
-  return text.size() >= least && text.size() <= most && is_line(text);
-}
-
 Result<void> check_agent(const std::string& agent) {
   if (is_name(agent)) return {};
   return refuse(Code::kBadName, std::string("an agent's id is ") + kNameRule);
@@ -102,7 +97,8 @@ struct CorrectionCheck::Follow {
 
   Result<void> operator()(const Correction::Undo& undo) const {
     const auto edit = list.edits_.find(undo.edit_id);
-    if (edit == list.edits_.end()) return refuse(Code::kNotFound, "no edit before this is called " + undo.edit_id);
+    if (edit == list.edits_.end())
+      return refuse(Code::kNotFound, "no edit or placement before this is called " + undo.edit_id);
     if (edit->second == undo.redo) {
       return refuse(Code::kConflict, "edit " + undo.edit_id + (undo.redo ? " was not undone" : " is undone already"));
     }
@@ -112,7 +108,7 @@ struct CorrectionCheck::Follow {
 
   Result<void> operator()(const Correction::ZoneChange& change) const {
     const Zone& zone = change.zone;
-    if (!is_kept_text(zone.name, 1, kMaxTitleBytes) || zone.name.find_first_of("/\\") != zone.name.npos) {
+    if (!is_kept_title(zone.name)) {
       return refuse(Code::kBadName, "a zone's name is one line of 1 to 80 bytes without slashes");
     }
     const bool is_there = list.zones_.contains(zone.name);
@@ -135,7 +131,9 @@ struct CorrectionCheck::Follow {
   Result<void> operator()(const Correction::Placement& placement) const {
     if (auto fine = check_agent(placement.agent); !fine) return fine;
     if (!is_name(placement.frame_id)) return refuse(Code::kBadName, std::string("frame_id must be ") + kNameRule);
-    return check_transform(placement.T_map_agent);
+    if (auto fine = check_transform(placement.T_map_agent); !fine) return fine;
+    list.edits_.emplace(id, true);
+    return {};
   }
 
   Result<void> operator()(const Correction::Weight& weight) const {
@@ -148,9 +146,8 @@ struct CorrectionCheck::Follow {
 Result<void> CorrectionCheck::take(const Correction& correction) {
   const auto& [revision, id, author, utime, content, what] = correction;
   if (revision <= revision_) return refuse(Code::kStale, "revisions must ascend, from 1");
-  if (!is_kept_text(id, 1, kMaxIdBytes)) return refuse(Code::kBadName, "an id must be one line of 1 to 80 bytes");
-  if (!is_kept_text(author, 0, kMaxIdBytes))
-    return refuse(Code::kBadName, "author must be one line of at most 80 bytes");
+  if (!is_kept_id(id)) return refuse(Code::kBadName, "an id must be one line of 1 to 80 bytes");
+  if (!is_kept_author(author)) return refuse(Code::kBadName, "author must be one line of at most 80 bytes");
   if (utime < 0) return refuse(Code::kBadRequest, "a time before 1970");
   if (ids_.contains(id)) return refuse(Code::kExists, "another correction has the id " + id);
   if (auto fine = std::visit(Follow{*this, id}, what); !fine) return fine;

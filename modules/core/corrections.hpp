@@ -47,7 +47,7 @@ struct EditRequest {
   std::int64_t utime = 0;
 };
 
-/// Takes an edit back, or brings it back.
+/// Takes an edit or a placement back, or brings it back.
 struct UndoRequest {
   std::string id;
   std::string author;
@@ -90,12 +90,13 @@ struct Lease {
   std::int64_t until = 0;  ///< microseconds since 1970
 };
 
-/// Holding again with the same id renews it, and may move it.
+/// Holding the same lease again renews it, and may move it.
 struct LeaseRequest {
   std::string id;
   std::string author;
-  bool hold = true;  ///< false: it is freed
-  Volume volume;     ///< not heeded when it is freed
+  std::string lease;  ///< its id, which its author shares with others
+  bool hold = true;   ///< false: it is freed
+  Volume volume;      ///< not heeded when it is freed
   WorkFrame frame;
   std::int64_t utime = 0;
 };
@@ -179,7 +180,7 @@ struct Operation {
   Kind kind = Kind::kAdd;
   std::string subject;     ///< the edit undone or redone, the zone, the agent; empty for an edit
   std::int64_t count = 0;  ///< voxels that an edit pins
-  bool active = true;      ///< false for an edit that is undone now
+  bool active = true;      ///< false for an edit or placement that is undone now
   VoxelIndex min, max;     ///< of what an edit pins
 };
 

@@ -28,7 +28,8 @@ enum class Code {
   kNoMap,
   kNotFound,
   kExists,
-  kBusy,  ///< not now; ask again
+  kExpired,  ///< it held for a while only, or was withdrawn
+  kBusy,     ///< not now; ask again
   kIo,
 };
 

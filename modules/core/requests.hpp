@@ -22,6 +22,7 @@ struct TransformRequest {
   std::string agent;
   std::string frame_id;  ///< the agent's frame it was found for; empty: the present one
   Transform T_map_agent = Transform::Identity();
+  std::int64_t utime = 0;  ///< when it was asked
 };
 
 /// Ends what an agent has sent: `kReset` keeps the agent and waits for a new frame, `kRemove` forgets it.
@@ -47,7 +48,8 @@ struct MapRequest {
   std::string map;     ///< name without extension
   std::string format;  ///< "bt", "ot" or "concord"; empty with kLoad: whichever exists
   bool overwrite = false;
-  std::string agent;  ///< with kLoad; empty: the map's name
+  std::string agent;       ///< with kLoad; empty: the map's name
+  std::int64_t utime = 0;  ///< when it was asked
 };
 
 /// Asks for a path on the grid. With `keep_active` it is replanned whenever a change of the map touches it.

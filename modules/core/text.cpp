@@ -40,8 +40,9 @@ struct CodeRange {
   std::uint32_t first, last;
 };
 
-/// Controls (Unicode's Cc), line and paragraph separators, and its format and default-ignorable characters: they turn
-/// text around or cannot be seen. Ascending. The joiners U+200C and U+200D are among them, so are variation selectors.
+/// Controls, line and paragraph separators, and of Unicode's format and ignorable characters those that turn text
+/// around or cannot be seen. Ascending. The joiners U+200C and U+200D are among them, so are variation selectors: two
+/// names that differ by them only look alike.
 constexpr CodeRange kUnseen[] = {
     {0x00, 0x1F},     {0x7F, 0x9F},       {0xAD, 0xAD},       {0x34F, 0x34F},     {0x600, 0x605},   {0x61C, 0x61C},
     {0x6DD, 0x6DD},   {0x70F, 0x70F},     {0x115F, 0x1160},   {0x17B4, 0x17B5},   {0x180B, 0x180F}, {0x200B, 0x200F},
@@ -95,6 +96,14 @@ bool is_title(std::string_view text) {
   return text.size() <= kMaxTitleBytes && text.find_first_not_of('.') != text.npos &&
          text.find_first_of("/\\") == text.npos && is_tidy(text);
 }
+
+bool is_kept_title(std::string_view text) {
+  return !text.empty() && text.size() <= kMaxTitleBytes && text.find_first_of("/\\") == text.npos && is_line(text);
+}
+
+bool is_kept_id(std::string_view text) { return !text.empty() && is_kept_author(text); }
+
+bool is_kept_author(std::string_view text) { return text.size() <= kMaxIdBytes && is_line(text); }
 
 bool is_request_id(std::string_view text) { return !text.empty() && text.size() <= kMaxIdBytes && is_tidy(text); }
 

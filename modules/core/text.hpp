@@ -37,7 +37,15 @@ inline constexpr std::size_t kMaxIdBytes = 80;     ///< of request ids and autho
 /// Who asks: at most 80 printable bytes, no space at either end. May be empty: nobody says.
 [[nodiscard]] bool is_author(std::string_view text);
 
+/// What was once taken from a person stays readable, can be undone and deleted, though the rules above have become
+/// narrower since: one line of so many bytes, a title without slashes.
+[[nodiscard]] bool is_kept_title(std::string_view text);
+[[nodiscard]] bool is_kept_id(std::string_view text);
+[[nodiscard]] bool is_kept_author(std::string_view text);
+
 /// In words, for refusals.
+inline constexpr const char* kKeptTitleRule = "one line of 1 to 80 bytes without slashes";
+inline constexpr const char* kKeptIdRule = "one line of 1 to 80 bytes";
 inline constexpr const char* kNameRule = "1 to 40 of A-Z a-z 0-9 . _ -, starting with a letter or digit";
 inline constexpr const char* kTitleRule =
     "1 to 80 bytes of printable text without slashes and invisible characters, not dots alone, no space at its ends";

@@ -203,7 +203,7 @@ void IngestNode::on_cloud(const std::string& channel, const CloudMessage& messag
 
 void IngestNode::changed(const std::string& id, const Change& change) {
   const Agent& agent = *ingest_.find(id);
-  if (auto known = store_.introduce(id, agent); !known) counters_.refused("disk", known.error());
+  wrote(store_.introduce(id, agent));
   store_.note(id, agent, change);
   streams_.tell(id, agent, change);
 }
@@ -211,8 +211,14 @@ void IngestNode::changed(const std::string& id, const Change& change) {
 void IngestNode::write_some() {
   if (bus_.now() < write_at_) return;
   const auto done = store_.write_some(ingest_.agents());
-  if (!done) counters_.refused("disk", done.error());
+  wrote(done);
   if (!done || store_.is_idle()) write_at_ = bus_.now() + kGatherPeriod;
+}
+
+/// Who publishes is told by `disk_fails` that what was sent would not outlive this process.
+void IngestNode::wrote(const Result<void>& done) {
+  if (!done) counters_.refused("disk", done.error());
+  if (!done || counters_.get("disk_fails") != 0) counters_.set("disk_fails", done ? 0 : 1);
 }
 
 void IngestNode::count() {

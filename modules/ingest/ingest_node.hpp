@@ -67,6 +67,7 @@ class IngestNode {
   [[nodiscard]] Answer answer_to(const std::string& id, const Result<std::int64_t>& count, const std::string& done);
 
   void write_some();
+  void wrote(const Result<void>& done);
   void count();
 
   Bus& bus_;

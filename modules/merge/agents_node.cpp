@@ -25,7 +25,8 @@ std::string agent_named(const std::string& channel, std::size_t prefix) {
 AgentsNode::AgentsNode(const NodeContext& context, const People& people, MapStreams& map)
     : context_(context), people_(people), map_(map), last_arrival_(context.bus.now()) {
   for (const auto& [id, placements] : people_.placements()) {
-    if (std::ranges::any_of(placements, [](const auto& entry) { return entry.second.placement.has_layer; }))
+    const auto awaits = [](const People::Placed& placed) { return placed.stands && placed.placement.has_layer; };
+    if (std::ranges::any_of(placements, [&](const auto& entry) { return std::ranges::any_of(entry.second, awaits); }))
       awaited_.insert(id);
   }
   listen();
@@ -45,26 +46,31 @@ void AgentsNode::listen() {
                                  if (BrickReceiver* stream = stream_of_channel(channel)) stream->on_digest(digest);
                                });
   concord::listen<ProcessStatus>(context_.bus, context_.counters, context_.process, "out/status/ingest",
-                                 [this](const std::string&, const ProcessStatus&) {
-                                   if (!ingest_heard_) ingest_heard_ = context_.bus.now();
-                                 });
+                                 [this](const std::string&, const ProcessStatus& status) { on_ingest(status); });
   concord::listen<AgentPose>(context_.bus, context_.counters, context_.process, "in/[^/]+/pose",
                              [this](const std::string& channel, AgentPose pose) { on_pose(channel, std::move(pose)); });
+}
+
+/// One that was silent for long, or has begun anew, has its agents still to name.
+void AgentsNode::on_ingest(const ProcessStatus& status) {
+  const std::int64_t time = context_.bus.now();
+  const bool goes_on = ingest_ && ingest_->boot_id == status.boot_id && time - ingest_->last < kAllHeard;
+  ingest_ = {status.boot_id, goes_on ? ingest_->first : time, time};
 }
 
 /// Null if there is no room for one more, or none can have this name.
 AgentsNode::Agent* AgentsNode::agent_called(const std::string& id, const std::string& channel) {
   const auto it = agents_.find(id);
   if (it != agents_.end()) return &it->second;
-  if (!is_name(id) || (!has_room() && !awaited_.contains(id))) {
+  if (!is_name(id) || (!awaited_.contains(id) && !make_room())) {
     context_.counters.refused(channel, {Code::kBadName, "no room for an agent of this name"});
     return nullptr;
   }
   return &agents_[id];
 }
 
-/// Makes it where it can: who is not there, having left or said no frame yet, gives way.
-bool AgentsNode::has_room() {
+/// For one more: who is not there, having left or said no frame yet, gives way. Returns whether there is.
+bool AgentsNode::make_room() {
   const auto most = static_cast<std::size_t>(context_.site.ingest.max_agents);
   if (agents_.size() < most) return true;
   const auto absent = std::ranges::find_if(agents_, [](const auto& entry) { return entry.second.frame_id.empty(); });
@@ -112,7 +118,7 @@ void AgentsNode::follow(const std::string& id) {
   const Transform* T = T_map_agent(id, it->second);
   if (map_.layers().find(id) != nullptr) {
     map_.layers().set_weight(id, weight_of(id));
-    if (T != nullptr) map_.layers().place(id, *T);
+    T != nullptr ? map_.layers().place(id, *T) : map_.layers().unplace(id);
   }
   publish_pose(id, it->second);
 }
@@ -218,7 +224,10 @@ int AgentsNode::weight_of(const std::string& id) const {
   return people_.weight(id).value_or(context_.site.agent(id).weight);
 }
 
-bool AgentsNode::all_heard() const { return ingest_heard_ && context_.bus.now() - *ingest_heard_ >= kAllHeard; }
+bool AgentsNode::all_heard() const {
+  const std::int64_t time = context_.bus.now();
+  return ingest_ && time - ingest_->first >= kAllHeard && time - ingest_->last < kAllHeard;
+}
 
 bool AgentsNode::has_all_that_was_aligned() const {
   const bool all = std::ranges::all_of(awaited_, [&](const std::string& id) {
@@ -281,12 +290,13 @@ std::optional<AgentState> AgentsNode::state_of(const std::string& id) const {
 }
 
 void AgentsNode::publish_agents() {
-  AgentList list{context_.bus.now(), {}};
+  AgentList list{context_.bus.now(), context_.site.resolution, {}};
   for (const auto& [id, agent] : agents_) {
     if (auto state = state_of(id)) list.agents.push_back(std::move(*state));
   }
   context_.bus.publish("out/agents", encode(list));
   context_.counters.set("agents", static_cast<std::int64_t>(list.agents.size()));
+  context_.counters.set("agents_without_frame", static_cast<std::int64_t>(agents_.size() - list.agents.size()));
 }
 
 void AgentsNode::publish_pose(const std::string& id, const Agent& agent) {

@@ -65,8 +65,9 @@ class AgentsNode {
 
   void listen();
   Agent* agent_called(const std::string& id, const std::string& channel);
-  [[nodiscard]] bool has_room();
-  /// Ingest has been heard for so long that all its agents were.
+  [[nodiscard]] bool make_room();
+  void on_ingest(const ProcessStatus& status);
+  /// Ingest speaks, and has for so long that all its agents were heard.
   [[nodiscard]] bool all_heard() const;
   BrickReceiver* stream_of_channel(const std::string& channel);
   void open_stream(const std::string& id, Agent& agent);
@@ -86,9 +87,12 @@ class AgentsNode {
   const People& people_;
   MapStreams& map_;
   std::map<std::string, Agent> agents_;
-  std::set<std::string> awaited_;             ///< had a layer in the map before this start
-  std::int64_t last_arrival_;                 ///< of a brick, while the map is held back
-  std::optional<std::int64_t> ingest_heard_;  ///< first
+  std::set<std::string> awaited_;  ///< had a layer in the map before this start
+  std::int64_t last_arrival_;      ///< of a brick, while the map is held back
+  struct Ingest {
+    std::int64_t boot_id, first, last;  ///< heard, without a long silence between
+  };
+  std::optional<Ingest> ingest_;
 };
 
 }  // namespace concord

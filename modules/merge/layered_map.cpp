@@ -37,6 +37,14 @@ void LayeredMap::place(const std::string& agent, const Transform& T_map_agent) {
   mark(layer);
 }
 
+void LayeredMap::unplace(const std::string& agent) {
+  const auto it = layers_.find(agent);
+  assert(it != layers_.end());
+  mark(it->second);
+  it->second.T_map_agent.reset();
+  it->second.lattice.reset();
+}
+
 void LayeredMap::remove_layer(const std::string& agent) {
   const auto it = layers_.find(agent);
   if (it == layers_.end()) return;

@@ -27,6 +27,8 @@ class LayeredMap {
   void set_brick(const std::string& agent, BrickIndex index, Brick brick);
   /// Puts the layer into the map, or moves it. @pre begin_layer was called for the agent.
   void place(const std::string& agent, const Transform& T_map_agent);
+  /// Takes the layer out of the map; it waits to be placed. @pre begin_layer was called for the agent.
+  void unplace(const std::string& agent);
   /// Whether all of the layer would lie within the map's bounds there.
   [[nodiscard]] bool fits(const std::string& agent, const Transform& T_map_agent) const;
   void remove_layer(const std::string& agent);

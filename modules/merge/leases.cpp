@@ -28,7 +28,7 @@ tl::unexpected<Error> locked_by(const Lease& lease, std::int64_t now) {
 }  // namespace
 
 Result<Lease> Leases::check(const LeaseRequest& request, const Transform& T_map_frame, std::int64_t now) const {
-  const auto same = held_.find(request.id);
+  const auto same = held_.find(request.lease);
   if (same != held_.end() && same->second.bars(request.author, now)) {
     return refuse(Code::kLocked, words_for(same->second.lease, now) + "; choose another id");
   }
@@ -37,10 +37,11 @@ Result<Lease> Leases::check(const LeaseRequest& request, const Transform& T_map_
     return refuse(Code::kBusy, "all " + std::to_string(kMaxLeases) + " leases are held; ask again in some seconds");
   }
   const auto own = std::ranges::count_if(held_, [&](const auto& entry) {
-    return entry.first != request.id && entry.second.lease.author == request.author && entry.second.lease.until > now;
+    return entry.first != request.lease && entry.second.lease.author == request.author &&
+           entry.second.lease.until > now;
   });
   if (own >= kMaxLeasesOfOne) {
-    return refuse(Code::kTooLarge, "one person may hold " + std::to_string(kMaxLeasesOfOne) + " leases; free one");
+    return refuse(Code::kBusy, "one person may hold " + std::to_string(kMaxLeasesOfOne) + " leases; free one");
   }
   const Eigen::AlignedBox3d bounds = bounds_in_map(request.volume, T_map_frame);
   if (!(bounds.sizes().maxCoeff() <= kMaxLeaseSide + kSlack)) {
@@ -48,7 +49,7 @@ Result<Lease> Leases::check(const LeaseRequest& request, const Transform& T_map_
   }
   const auto free = check(bounds, request.author, now);
   if (!free) return tl::unexpected(free.error());
-  return Lease{request.id, request.author, request.volume, T_map_frame, now + kLeaseTime};
+  return Lease{request.lease, request.author, request.volume, T_map_frame, now + kLeaseTime};
 }
 
 void Leases::hold(Lease lease) {
@@ -59,7 +60,7 @@ void Leases::hold(Lease lease) {
 }
 
 Result<bool> Leases::free(const LeaseRequest& request, std::int64_t now) {
-  const auto it = held_.find(request.id);
+  const auto it = held_.find(request.lease);
   if (it == held_.end()) return false;
   if (it->second.bars(request.author, now)) return locked_by(it->second.lease, now);
   held_.erase(it);

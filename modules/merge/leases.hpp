@@ -28,8 +28,8 @@ class Leases {
   explicit Leases(double resolution) : resolution_(resolution) {}
 
   /// What a hold leads to. Refused: an overlap with another author's lease, by bounding boxes, or an id that is another
-  /// author's (kLocked); all kMaxLeases taken (kBusy); over kMaxLeaseSide, or kMaxLeasesOfOne of the author
-  /// (kTooLarge). Those that are over at `now` do not count.
+  /// author's (kLocked); all kMaxLeases taken, or kMaxLeasesOfOne of the author (kBusy); over
+  /// kMaxLeaseSide (kTooLarge). Those that are over at `now` do not count.
   [[nodiscard]] Result<Lease> check(const LeaseRequest& request, const Transform& T_map_frame, std::int64_t now) const;
   /// @pre check gave it.
   void hold(Lease lease);

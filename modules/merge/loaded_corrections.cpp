@@ -30,17 +30,17 @@ class Following {
       if (is_of_no_layer(std::get_if<Correction::Weight>(&saved.what))) continue;
       Correction correction = saved;
       const LayerHead* head = rekey(correction);
-      if (head != nullptr) placed_.insert_or_assign(head->agent, correction);
+      if (const auto* undo = std::get_if<Correction::Undo>(&saved.what)) note(*undo);
       const People::Made* known = people_.find(saved.id);
       if (known == nullptr) {
+        if (head != nullptr) placed_[head->agent].push_back({correction, true});
         append(std::move(correction));
-        if (head != nullptr) appended_[head->agent] = true;
         continue;
       }
       if (known->content != saved.content) {
         return refuse(Code::kExists, "another correction has the id " + saved.id + ", which the map has too");
       }
-      if (head != nullptr) appended_[head->agent] = false;
+      if (head != nullptr) placed_[head->agent].push_back({correction, false});
     }
     return {};
   }
@@ -49,9 +49,9 @@ class Following {
   void complete(const std::function<int(const std::string&)>& weight_here) {
     for (const SavedLayer& layer : loading_.archive.layers) {
       const LayerHead& head = layer.head;
-      const auto placed = placed_.find(head.agent);
-      if (placed != placed_.end() && !appended_.at(head.agent) && !is_placed(head)) {
-        Correction again = placed->second;
+      const Placed* placed = last_placed(head.agent);
+      if (placed != nullptr && !placed->is_new && !is_placed(head)) {
+        Correction again = placed->correction;
         again.id = id_for("placed", loading_, head.agent);
         append(std::move(again));
       }
@@ -95,6 +95,27 @@ class Following {
     return &it->head;
   }
 
+  /// Of a layer of the file.
+  struct Placed {
+    Correction correction;
+    bool is_new;  ///< it was not known here
+    bool stands = true;
+  };
+
+  void note(const Correction::Undo& undo) {
+    for (auto& [agent, placements] : placed_) {
+      for (Placed& placed : placements) {
+        if (placed.correction.id == undo.edit_id) placed.stands = undo.redo;
+      }
+    }
+  }
+  /// Where the file has it; null: nowhere.
+  [[nodiscard]] const Placed* last_placed(const std::string& agent) const {
+    const auto it = placed_.find(agent);
+    if (it == placed_.end()) return nullptr;
+    const auto last = std::ranges::find(it->second.rbegin(), it->second.rend(), true, &Placed::stands);
+    return last != it->second.rend() ? &*last : nullptr;
+  }
   [[nodiscard]] bool is_placed(const LayerHead& head) const {
     return people_.T_map_agent(head.agent, head.frame_id, loading_.incarnation) != nullptr;
   }
@@ -105,14 +126,13 @@ class Following {
   }
   /// Who placed it, if anybody did.
   [[nodiscard]] std::string author_of(const LayerHead& head) const {
-    const auto it = placed_.find(head.agent);
-    return it != placed_.end() ? it->second.author : std::string();
+    const Placed* placed = last_placed(head.agent);
+    return placed != nullptr ? placed->correction.author : std::string();
   }
 
   const Loading& loading_;
   const People& people_;
-  std::map<std::string, Correction> placed_;  ///< the last placement of each layer
-  std::map<std::string, bool> appended_;      ///< whether that was new here
+  std::map<std::string, std::vector<Placed>> placed_;  ///< by agent, the last one last
   std::map<std::string, int> new_weights_;
 };
 

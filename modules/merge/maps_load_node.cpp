@@ -14,23 +14,24 @@ namespace concord {
 void MapsNode::load(const MapRequest& request) {
   if (request.format != kNative && !(request.format.empty() && maps_.contains(request.map, kNative))) return;
   const std::uint64_t content = content_of(request);
-  if (answers_.repeat(request.id, context_.process, content)) return;
+  if (answers_.repeat(request.id, context_.process, content, request.utime)) return;
   if (parts_.people_node.repeat(kRequests, request.id, content)) return;
   advance(request, content);
 }
 
 /// Nothing that could refuse the file is left for when its layers have been loaded.
 void MapsNode::advance(const MapRequest& request, std::uint64_t content) {
-  if (const auto opened = open(request, content); !opened) return replies_.deny(kRequests, request.id, opened.error());
+  const auto deny = [&](const Error& why) {
+    answers_.give(replies_.denied(kRequests, request.id, why), content, request.utime);
+  };
+  if (const auto opened = open(request, content); !opened) return deny(opened.error());
   const bool has_all = has_layers();
   if (!has_all && opened_->fits_at == parts_.people.revision()) return say_may_load(request);
   const auto corrections = following();
-  if (!corrections) return replies_.deny(kRequests, request.id, corrections.error());
+  if (!corrections) return deny(corrections.error());
   opened_->fits_at = parts_.people.revision();
   if (!has_all) return say_may_load(request);
-  if (const auto done = parts_.people_node.commit(*corrections); !done) {
-    return replies_.deny(kRequests, request.id, done.error());
-  }
+  if (const auto done = parts_.people_node.commit(*corrections); !done) return deny(done.error());
   opened_.reset();
   answers_.give(replies_.granted(request.id, parts_.people.revision(), static_cast<std::int64_t>(corrections->size()),
                                  "took over what people corrected"),

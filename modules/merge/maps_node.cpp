@@ -31,10 +31,10 @@ MapsNode::MapsNode(const NodeContext& context, const Parts& parts)
 
 void MapsNode::save(const MapRequest& request) {
   const std::uint64_t content = content_of(request);
-  if (answers_.repeat(request.id, context_.process, content)) return;
+  if (answers_.repeat(request.id, context_.process, content, request.utime)) return;
   if (parts_.people_node.repeat(kRequests, request.id, content)) return;
   const auto bytes = write(request);
-  if (!bytes) return replies_.deny(kRequests, request.id, bytes.error());
+  if (!bytes) return answers_.give(replies_.denied(kRequests, request.id, bytes.error()), content, request.utime);
   const std::string file = request.map + "." + request.format;
   answers_.give(replies_.granted(request.id, parts_.map.revision(), *bytes, "saved " + file), content);
 }

@@ -37,7 +37,9 @@ People MergeNode::restored() {
   BrickSet touched;
   const auto done = store_.for_each([&](const Correction& correction) -> Result<void> {
     const auto* undo = std::get_if<Correction::Undo>(&correction.what);
-    if (undo != nullptr && !people.edits().check(*undo)) return damaged(correction.id + " undoes what is not so");
+    if (undo != nullptr && (people.find(undo->edit_id) == nullptr || people.stands(undo->edit_id) == undo->redo)) {
+      return damaged(correction.id + " undoes or redoes what is so already, or is not there");
+    }
     people.apply(correction, touched);
     return {};
   });

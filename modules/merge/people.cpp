@@ -19,6 +19,20 @@ bool matches(const Operation& operation, const HistoryRequest& request) {
          operation.utime >= request.since && (request.until == 0 || operation.utime < request.until);
 }
 
+/// The placement that was made so; null: it is none, or nothing is left of it.
+template <class Placements>
+auto* placement_made(Placements& of_agents, const Operation& operation) {
+  decltype(&of_agents.begin()->second.begin()->second.front()) none = nullptr;
+  if (operation.kind != Operation::Kind::kTransform) return none;
+  const auto it = of_agents.find(operation.subject);
+  if (it == of_agents.end()) return none;
+  for (auto& [key, placements] : it->second) {
+    const auto found = std::ranges::find(placements, operation.revision, &People::Placed::revision);
+    if (found != placements.end()) return &*found;
+  }
+  return none;
+}
+
 }  // namespace
 
 Result<Correction::Edit> People::check(const EditRequest& request, const Transform& T_map_frame, const BrickMap& map,
@@ -39,6 +53,15 @@ Result<Correction::Edit> People::check(const EditRequest& request, const Transfo
 
 Result<Correction::Undo> People::check(const UndoRequest& request, std::int64_t now) const {
   Correction::Undo undo{request.edit_id, request.redo};
+  if (const Made* made = find(request.edit_id);
+      made != nullptr && made->operation.kind == Operation::Kind::kTransform) {
+    const Placed* placed = placement_made(placements_, made->operation);
+    if (placed == nullptr) {
+      return refuse(Code::kConflict, "nothing is left of placement " + undo.edit_id + ": that frame is over");
+    }
+    if (placed->stands != undo.redo) return undo;
+    return refuse(Code::kConflict, "placement " + undo.edit_id + (undo.redo ? " is not undone" : " is undone already"));
+  }
   if (const auto can = edits_.check(undo); !can) return tl::unexpected(can.error());
   const auto free = leases_.check(edits_.bricks_of(request.edit_id), request.author, now);
   if (!free) return tl::unexpected(free.error());
@@ -94,7 +117,12 @@ struct People::Apply {
   void operator()(const Correction::Edit& edit) const {
     people.edits_.apply(correction.revision, correction.id, by_brick(edit), touched);
   }
-  void operator()(const Correction::Undo& undo) const { people.edits_.apply(correction.revision, undo, touched); }
+  void operator()(const Correction::Undo& undo) const {
+    if (people.edits_.contains(undo.edit_id)) return people.edits_.apply(correction.revision, undo, touched);
+    const Made* made = people.find(undo.edit_id);
+    Placed* placed = made != nullptr ? placement_made(people.placements_, made->operation) : nullptr;
+    if (placed != nullptr) placed->stands = undo.redo;  // else its frame is over
+  }
   void operator()(const Correction::ZoneChange& change) const {
     if (change.op == ZoneRequest::Op::kDelete) {
       people.zones_.erase(change.zone.name);
@@ -112,7 +140,7 @@ struct People::Apply {
     if (placement.incarnation != 0) {
       std::erase_if(placements, [](const auto& entry) { return entry.first.second == 0; });
     }
-    placements[{placement.frame_id, placement.incarnation}] = {placement, correction.revision};
+    placements[{placement.frame_id, placement.incarnation}].push_back({placement, correction.revision});
   }
   void operator()(const Correction::Weight& weight) const { people.weights_[weight.agent] = weight.weight; }
 };
@@ -141,8 +169,14 @@ std::vector<Operation> People::history(const HistoryRequest& request) const {
   return out;
 }
 
-bool People::is_active(const Operation& operation) const {
-  return !is_edit(operation.kind) || edits_.is_active(operation.id);
+bool People::is_active(const Operation& operation) const { return stands(operation.id).value_or(true); }
+
+std::optional<bool> People::stands(const std::string& id) const {
+  const Made* made = find(id);
+  if (made == nullptr) return std::nullopt;
+  if (is_edit(made->operation.kind)) return edits_.is_active(id);
+  const Placed* placed = placement_made(placements_, made->operation);
+  return placed != nullptr ? std::optional(placed->stands) : std::nullopt;
 }
 
 const Transform* People::T_map_agent(const std::string& agent, const std::string& frame_id,
@@ -157,7 +191,9 @@ const People::Placed* People::placed(const std::string& agent, const std::string
   const auto it = placements_.find(agent);
   if (it == placements_.end()) return nullptr;
   const auto found = it->second.find({frame_id, incarnation});
-  return found != it->second.end() ? &found->second : nullptr;
+  if (found == it->second.end()) return nullptr;
+  const auto last = std::ranges::find(found->second.rbegin(), found->second.rend(), true, &Placed::stands);
+  return last != found->second.rend() ? &*last : nullptr;
 }
 
 /// What an agent's layer takes over from before it had one. It is later than any placement of a layer, see apply.

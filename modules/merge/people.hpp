@@ -35,7 +35,9 @@ class People {
   /// another author's lease (kLocked).
   [[nodiscard]] Result<Correction::Edit> check(const EditRequest& request, const Transform& T_map_frame,
                                                const BrickMap& map, std::int64_t now) const;
-  /// Refused: kNotFound; kConflict if it is so already; a voxel in another author's lease (kLocked).
+  /// Of an edit, or of a placement: the last one that stands of an agent's frame and incarnation holds. Refused:
+  /// kNotFound; kConflict if it is so already, or nothing is left of a placement; for an edit also a voxel in another
+  /// author's lease (kLocked).
   [[nodiscard]] Result<Correction::Undo> check(const UndoRequest& request, std::int64_t now) const;
   /// Refused: a name that is taken (kExists) or nobody's (kNotFound), over kMaxZones (kTooLarge), beyond the map
   /// (kOutOfBounds), changed since the base revision (kStaleRevision), that being to come (kBadRequest); the zone's
@@ -66,12 +68,15 @@ class People {
   struct Placed {
     Correction::Placement placement;
     std::int64_t revision = 0;
+    bool stands = true;  ///< it was not undone
   };
-  /// By frame and incarnation: as it was placed last. Those of kNobodys are history only. Of an agent that had sent
-  /// poses only (incarnation 0) they are over once it is placed with a layer.
-  using Placements = std::map<std::pair<std::string, std::int64_t>, Placed>;
+  /// By frame and incarnation: as it was placed, the last one last. Those of kNobodys are history only. Of an agent
+  /// that had sent poses only (incarnation 0) they are over once it is placed with a layer.
+  using Placements = std::map<std::pair<std::string, std::int64_t>, std::vector<Placed>>;
   /// By agent.
   [[nodiscard]] const std::map<std::string, Placements>& placements() const { return placements_; }
+  /// Of an edit or a placement, whether it was not undone; none: neither has this id, or nothing is left of it.
+  [[nodiscard]] std::optional<bool> stands(const std::string& id) const;
   /// Null: nobody placed it. Where an agent was placed by its poses its layer lies too, if it is in the same frame; but
   /// not a layer of a file, which tells where it lies itself.
   [[nodiscard]] const Transform* T_map_agent(const std::string& agent, const std::string& frame_id,

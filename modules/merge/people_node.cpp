@@ -4,8 +4,6 @@
 #include <set>
 #include <utility>
 
-#include "bus/recent_answers.hpp"
-
 namespace concord {
 namespace {
 
@@ -53,6 +51,7 @@ PeopleNode::PeopleNode(const NodeContext& context, MergeStore& store, People& pe
       map_(map),
       agents_(agents),
       replies_(context),
+      answers_(context.bus),
       zone_list_(context.bus, context.counters, "out/zones", context.site.stream.bytes_per_second),
       lease_list_(context.bus, context.counters, "out/leases", context.site.stream.bytes_per_second) {
   hear<EditRequest>("in/edit", [this](const EditRequest& request) { return check(request); });
@@ -73,15 +72,18 @@ template <class Request, class Check>
 void PeopleNode::hear(const std::string& channel, Check check) {
   listen<Request>(context_.bus, context_.counters, context_.process, channel,
                   [this, check](const std::string& on, Request request) {
+                    const std::int64_t asked = request.utime;
                     const std::uint64_t content = content_without_time(request);
                     if (repeat(on, request.id, content)) return;
+                    if (answers_.repeat(request.id, context_.process, content, asked)) return;
+                    const auto deny = [&](const Error& why) {
+                      answers_.give(replies_.denied(on, request.id, why), content, asked);
+                    };
                     auto what = check(request);
-                    if (!what) return replies_.deny(on, request.id, what.error());
+                    if (!what) return deny(what.error());
                     const Correction correction{people_.revision() + 1, request.id, request.author,
                                                 context_.bus.now(),     content,    std::move(*what)};
-                    if (const auto done = commit({&correction, 1}); !done) {
-                      return replies_.deny(on, request.id, done.error());
-                    }
+                    if (const auto done = commit({&correction, 1}); !done) return deny(done.error());
                     const Operation& made = people_.find(request.id)->operation;
                     replies_.grant(made.id, made.revision, count_of(made), message_of(made));
                   });
@@ -131,6 +133,12 @@ void PeopleNode::follow(std::span<const Correction> corrections) {
   for (const Correction& correction : corrections) {
     people_.apply(correction, touched);
     if (const auto* placement = std::get_if<Correction::Placement>(&correction.what)) agents.insert(placement->agent);
+    if (const auto* undo = std::get_if<Correction::Undo>(&correction.what)) {
+      const People::Made* undone = people_.find(undo->edit_id);
+      if (undone != nullptr && undone->operation.kind == Operation::Kind::kTransform) {
+        agents.insert(undone->operation.subject);
+      }
+    }
     if (const auto* weight = std::get_if<Correction::Weight>(&correction.what)) agents.insert(weight->agent);
     has_zones = has_zones || std::holds_alternative<Correction::ZoneChange>(correction.what);
   }
@@ -140,21 +148,23 @@ void PeopleNode::follow(std::span<const Correction> corrections) {
 }
 
 void PeopleNode::on_lease(const LeaseRequest& request) {
-  if (request.hold) return hold(request);
-  const auto freed = people_.leases().free(request, context_.bus.now());
-  if (!freed) return replies_.deny(kLeaseChannel, request.id, freed.error());
-  if (*freed) say_leases();
-  replies_.grant(request.id, people_.revision(), *freed ? 1 : 0, "freed");
+  const std::uint64_t content = content_of(encode(request));
+  if (answers_.repeat(request.id, context_.process, content)) return;
+  const auto done = request.hold ? hold(request) : people_.leases().free(request, context_.bus.now());
+  if (!done) return answers_.give(replies_.denied(kLeaseChannel, request.id, done.error()), content);
+  if (*done) say_leases();
+  const char* words = request.hold ? "held for 10 s" : "freed";
+  answers_.give(replies_.granted(request.id, people_.revision(), *done ? 1 : 0, words), content);
 }
 
-void PeopleNode::hold(const LeaseRequest& request) {
+/// Returns true: there is one.
+Result<bool> PeopleNode::hold(const LeaseRequest& request) {
   const auto T_map_frame = agents_.T_map_frame(request.frame);
-  if (!T_map_frame) return replies_.deny(kLeaseChannel, request.id, T_map_frame.error());
+  if (!T_map_frame) return tl::unexpected(T_map_frame.error());
   auto lease = people_.leases().check(request, *T_map_frame, context_.bus.now());
-  if (!lease) return replies_.deny(kLeaseChannel, request.id, lease.error());
+  if (!lease) return tl::unexpected(lease.error());
   people_.leases().hold(std::move(*lease));
-  say_leases();
-  replies_.grant(request.id, people_.revision(), 1, "held for 10 s");
+  return true;
 }
 
 void PeopleNode::expire_leases() {

@@ -6,6 +6,7 @@
 
 #include "bus/list_stream.hpp"
 #include "bus/process.hpp"
+#include "bus/recent_answers.hpp"
 #include "bus/replies.hpp"
 #include "merge/agents_node.hpp"
 #include "merge/map_streams.hpp"
@@ -35,7 +36,7 @@ class PeopleNode {
   template <class Request, class Check>
   void hear(const std::string& channel, Check check);
   void on_lease(const LeaseRequest& request);
-  void hold(const LeaseRequest& request);
+  [[nodiscard]] Result<bool> hold(const LeaseRequest& request);
 
   [[nodiscard]] Result<Correction::Edit> check(const EditRequest& request);
   [[nodiscard]] Result<Correction::ZoneChange> check(const ZoneRequest& request);
@@ -50,6 +51,7 @@ class PeopleNode {
   MapStreams& map_;
   AgentsNode& agents_;
   Replies replies_;
+  RecentAnswers answers_;  ///< what the store does not keep: refusals, and all about leases
   ListSender<Zone> zone_list_;
   ListSender<Lease> lease_list_;
 };

@@ -28,8 +28,7 @@ class Spending {
   using Life = std::vector<std::pair<std::string, ZoneRequest::Op>>;
 
   void take(const std::string& id, const Correction::Undo& undo) {
-    const bool is_known = people_.edits().contains(undo.edit_id);
-    bool& stands = edits_.try_emplace(undo.edit_id, !is_known || people_.edits().is_active(undo.edit_id)).first->second;
+    bool& stands = edits_.try_emplace(undo.edit_id, people_.stands(undo.edit_id).value_or(true)).first->second;
     if (stands == undo.redo) spent.insert(id);
     stands = undo.redo;
   }

@@ -110,6 +110,7 @@ class Stack {
   /// Everything but the state folder begins anew.
   void start(std::int64_t time) {
     running_.reset();
+    counters_.set("edit_revision", -1);  // until merge says it anew
     bus_ = std::make_unique<LockstepBus>(time);
     running_ = std::make_unique<Running>(*bus_, counters_, site_, submap_);
     wait(1'500'000);

@@ -117,7 +117,7 @@ Request Script::weight(const std::string& author) {
 }
 
 Request Script::lease(const std::string& author) {
-  return LeaseRequest{"lease of " + author, author, whole(0, 1) == 0, volume(), frame()};
+  return LeaseRequest{new_id(), author, "lease of " + author, whole(0, 1) == 0, volume(), frame()};
 }
 
 }  // namespace concord::soak

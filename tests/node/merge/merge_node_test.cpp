@@ -139,6 +139,7 @@ TEST_F(MergeNodeTest, StrangersWhoSayNothingOfUseTakeNoRoom) {
   }
   run();
   EXPECT_TRUE(agents_.agents.empty());
+  EXPECT_LE(counters_.get("agents_without_frame"), 1);
   send_wall();
   ASSERT_EQ(agents_.agents.size(), 1u);
   EXPECT_EQ(agents_.agents[0].id, "robot1");

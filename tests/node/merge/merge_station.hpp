@@ -72,6 +72,9 @@ class MergeStation : public ::testing::Test {
 
   void run(std::int64_t microseconds = 3'000'000) { bus_->advance_to(bus_->now() + microseconds); }
 
+  /// So long that what was refused is looked at anew.
+  void let_refusals_pass() { run(RecentAnswers::kRefusalHolds); }
+
   void send_wall() {
     VoxelMask mask{};
     mask[0] = 0xFF;

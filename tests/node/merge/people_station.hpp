@@ -25,7 +25,8 @@ class PeopleStation : public MergeStation {
     return ask("in/zone", encode(ZoneRequest{id, author, op, name, Zone::Kind::kNoGo, volume, frame, -1, bus_->now()}));
   }
   Answer lease(const std::string& id, const std::string& author, bool hold, Volume volume = box(0, 1)) {
-    return ask("in/lease", encode(LeaseRequest{id, author, hold, volume, {}, bus_->now()}));
+    const std::string request_id = "ask-" + std::to_string(++asked_);
+    return ask("in/lease", encode(LeaseRequest{request_id, author, id, hold, volume, {}, bus_->now()}));
   }
   Answer weigh(const std::string& id, const std::string& agent, int weight) {
     return ask("in/weight", encode(WeightRequest{id, "eva", agent, weight, bus_->now()}));
@@ -68,6 +69,7 @@ class PeopleStation : public MergeStation {
     run();
   }
 
+  int asked_ = 0;
   BrickMap second_map_;
   std::unique_ptr<BrickSender> second_;
 };

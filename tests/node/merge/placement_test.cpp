@@ -181,5 +181,62 @@ TEST_F(PlacementTest, ASavedMapHasEveryLayerOrIsRefused) {
   EXPECT_EQ(save("s3", "two").code, "BUSY") << "robot2's layer is to come";
 }
 
+TEST_F(PlacementTest, UndoingAPlacementBringsBackTheOneBefore) {
+  send_wall();
+  ASSERT_TRUE(place("t1", at(1, 0)).ok);
+  ASSERT_TRUE(place("t2", at(2, 0)).ok);
+  run();
+  const BrickMap at_two = node_->map();
+  const Answer undone = undo("u2", "t2");
+  ASSERT_TRUE(undone.ok) << undone.message;
+  run();
+  EXPECT_EQ(x_of_robot(), 1.0);
+  EXPECT_EQ(undo("u3", "t2").code, "CONFLICT");
+  EXPECT_TRUE(undo("u2", "t2").ok) << "the same once more";
+
+  ASSERT_TRUE(undo("u1", "t1").ok);
+  run();
+  EXPECT_EQ(x_of_robot(), std::nullopt);
+  EXPECT_TRUE(node_->map().empty()) << "nobody placed it: it waits outside";
+  EXPECT_EQ(digest(heard_), digest(node_->map()));
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_TRUE(undo("r2", "t2", true).ok);
+    run();
+    EXPECT_EQ(x_of_robot(), 2.0);
+    EXPECT_EQ(node_->map(), at_two);
+    start();
+    agent_stream_->begin("frame1");
+    run();
+    EXPECT_EQ(x_of_robot(), 2.0) << "also after a restart";
+  }
+}
+
+TEST_F(PlacementTest, HistoryTellsWhichPlacementsStand) {
+  send_wall();
+  ASSERT_TRUE(place("t1", at(1, 0)).ok);
+  ASSERT_TRUE(place("t2", at(2, 0)).ok);
+  ASSERT_TRUE(undo("u", "t2").ok);
+  HistoryRequest all;
+  all.id = "h1";
+  ASSERT_TRUE(history(all).ok);
+  ASSERT_EQ(histories_.size(), 1u);
+  const auto& operations = histories_[0].operations;
+  ASSERT_EQ(operations.size(), 3u);
+  EXPECT_TRUE(operations[0].active);
+  EXPECT_FALSE(operations[1].active);
+  EXPECT_TRUE(operations[2].active);
+}
+
+TEST_F(PlacementTest, OfAFrameThatIsOverNothingCanBeUndone) {
+  say_pose();
+  ASSERT_TRUE(place("t1", at(1, 0)).ok);
+  send_wall();  // it was carried over to the layer
+  run();
+  EXPECT_EQ(undo("u1", "t1").code, "CONFLICT");
+  ASSERT_TRUE(undo("u2", "carried-1").ok);
+  run();
+  EXPECT_EQ(x_of_robot(), std::nullopt);
+}
+
 }  // namespace
 }  // namespace concord

@@ -186,10 +186,10 @@ TEST_F(PlannerOnTheBus, ForgetsWhereARobotIsThatIsNotAlignedAnyMore) {
   robot.kind = "lidar";
   robot.frame_id = "odom";
   robot.aligned = true;
-  bus_.publish("out/agents", encode(AgentList{bus_.now(), {robot}}));
+  bus_.publish("out/agents", encode(AgentList{bus_.now(), 0.1, {robot}}));
   ask("p1", std::nullopt, false);
   robot.aligned = false;
-  bus_.publish("out/agents", encode(AgentList{bus_.now(), {robot}}));
+  bus_.publish("out/agents", encode(AgentList{bus_.now(), 0.1, {robot}}));
   ask("p2", std::nullopt, false);
   ASSERT_EQ(answers_.size(), 2U);
   EXPECT_EQ(answers_[0].code, "OK");

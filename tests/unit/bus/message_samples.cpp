@@ -56,6 +56,24 @@ Zone zone(const std::string& name, Volume volume) {
   return {name, Zone::Kind::kAllowContact, std::move(volume), some_transform(), "Zoë", kTime, 5};
 }
 
+AlignResult align_result() {
+  AlignEvidence evidence;
+  evidence.reason = "DEGENERATE";
+  evidence.message = "the walls leave it open";
+  evidence.T_target_source = some_transform();
+  evidence.overlap_source = 0.5;
+  evidence.overlap_target = 1.0;
+  evidence.rms = 0.02;
+  evidence.covariance[7] = 1e-4;
+  evidence.loose = {"slides along x (1.00 0.00 0.00)"};
+  evidence.against_upright = 0.01;
+  evidence.iterations = 40;
+  evidence.hypotheses = 8;
+  evidence.ms = 12.5;
+  return {"a-1", "Zoë", "",   {"robot1", "odom", 7}, {{"robot2", "map", 9}, {"robot3", "odom", 0}}, evidence, true,
+          0.25,  0.02,  kTime};
+}
+
 }  // namespace
 
 const std::vector<MessageSample>& message_samples() {
@@ -88,8 +106,8 @@ const std::vector<MessageSample>& message_samples() {
                                            kTime}),
       sample("zone_request_t",
              ZoneRequest{"z-2", "", ZoneRequest::Op::kDelete, "dock", Zone::Kind::kNoGo, {}, {}, kAnyRevision, kTime}),
-      sample("lease_request_t", LeaseRequest{"l-1", "Zoë", true, kOriented, {}, kTime}),
-      sample("lease_request_t", LeaseRequest{"l-1", "Zoë", false, {}, {}, kTime}),
+      sample("lease_request_t", LeaseRequest{"l-1", "Zoë", "my corner", true, kOriented, {}, kTime}),
+      sample("lease_request_t", LeaseRequest{"l-2", "Zoë", "my corner", false, {}, {}, kTime}),
       sample("weight_request_t", WeightRequest{"w-1", "Zoë", "robot1", 1000, kTime}),
       sample("localise_request_t",
              LocaliseRequest{"p-1", "Zoë", "robot1", some_transform(), {"headset", "h-1"}, kTime}),
@@ -129,8 +147,14 @@ const std::vector<MessageSample>& message_samples() {
       sample("map_list_t", MapList{"r-5", {{"a.bt", 100}, {"b.ot", 1LL << 40}}}),
       sample("path_request_t", PathRequest{"r-6", "robot1", Eigen::Vector2d(1, 2), {3, 4}, 0.4, true}),
       sample("path_t", Path{"r-6", "robot1", "OK", "a path", {{1, 2, 0}, {3, 4, 0}}, 2.8, 0.5, 77, 2, true, kTime}),
+      sample("align_request_t", AlignRequest{"a-1", "Zoë", "robot1", "odom", "robot2", "", some_transform(), kTime}),
+      sample("align_request_t", AlignRequest{"a-2", "", "robot1", "", "", "", std::nullopt, kTime}),
+      sample("align_decision_t", AlignDecision{"d-1", "Zoë", AlignDecision::Op::kAccept, "a-1", kTime}),
+      sample("align_decision_t", AlignDecision{"d-2", "", AlignDecision::Op::kDrop, "a-1", kTime}),
+      sample("align_result_t", align_result()),
       sample("answer_t", Answer{"r-1", "merge", true, "OK", "aligned", 5, 6}),
       sample("agents_t", AgentList{kTime,
+                                   0.05,
                                    {{"a", "lidar", "odom", 3, true, some_transform(), 100, 10, 7, true},
                                     {"b", "headset", "h", 1, false, Transform::Identity(), 0, 0, 0, false}}}),
       sample("status_t", ProcessStatus{kTime, "merge", 17, {{"bytes", 5}, {"refused.x", -1}}}),

@@ -38,7 +38,7 @@ TEST(MessagesAsker, ATextOverItsLimitIsRefusedToItsAsker) {
   refused(edit);
   refused(UndoRequest{"r", "me", long_text, false, 1});
   refused(ZoneRequest{"r", "me", ZoneRequest::Op::kAdd, long_text, Zone::Kind::kNoGo, kBox, {}, kAnyRevision, 1});
-  refused(LeaseRequest{"r", long_text, true, kBox, {}, 1});
+  refused(LeaseRequest{"r", long_text, "lease", true, kBox, {}, 1});
   refused(WeightRequest{"r", "me", long_text, 1, 1});
   refused(LocaliseRequest{"r", "me", long_text, Transform::Identity(), {}, 1});
   refused(TransformRequest{"r", "me", "robot1", long_text, Transform::Identity()});

@@ -135,7 +135,7 @@ RC_GTEST_PROP(MessagesCorrectionProperty, any_zone_request_comes_back, ()) {
 
 RC_GTEST_PROP(MessagesCorrectionProperty, any_lease_request_comes_back, ()) {
   const auto utime = *rc::gen::inRange<std::int64_t>(0, std::int64_t{1} << 62);
-  comes_back(LeaseRequest{"l", "me", true, any_volume(), any_frame(), utime});
+  comes_back(LeaseRequest{"l", "me", "lease", true, any_volume(), any_frame(), utime});
 }
 
 RC_GTEST_PROP(MessagesCorrectionProperty, any_history_comes_back_from_its_parts, ()) {
@@ -171,7 +171,8 @@ TEST(MessagesCorrection, NeedWhoAsks) {
   EXPECT_TRUE(decode<EditRequest>(encode(edit)));
   edit.id.clear();
   expect_refused(decode<EditRequest>(encode(edit)), Code::kBadRequest, "");
-  expect_refused(decode<LeaseRequest>(encode(LeaseRequest{"", "me", true, kBox, {}, 1})), Code::kBadRequest, "");
+  expect_refused(decode<LeaseRequest>(encode(LeaseRequest{"", "me", "lease", true, kBox, {}, 1})), Code::kBadRequest,
+                 "");
   expect_refused(decode<UndoRequest>(encode(UndoRequest{"\x1b", "me", "e", false, 1})), Code::kBadRequest, "");
   expect_refused(decode<HistoryRequest>(encode(HistoryRequest{"", "", "", {}, 0, 0, 0, 1}, 1)), Code::kBadRequest, "");
   expect_refused(decode<ConflictRequest>(encode(ConflictRequest{"", 1}, 1)), Code::kBadRequest, "");
@@ -285,8 +286,9 @@ TEST(MessagesCorrection, ZonesAreChecked) {
 }
 
 TEST(MessagesCorrection, LeasesWeightsAndPlacesAreChecked) {
-  expect_refused(decode<LeaseRequest>(encode(LeaseRequest{"l", "me", true, round(65), {}, 1})), Code::kTooLarge, "l");
-  EXPECT_TRUE(decode<LeaseRequest>(encode(LeaseRequest{"l", "me", false, round(65), {}, 1})));
+  expect_refused(decode<LeaseRequest>(encode(LeaseRequest{"l", "me", "lease", true, round(65), {}, 1})),
+                 Code::kTooLarge, "l");
+  EXPECT_TRUE(decode<LeaseRequest>(encode(LeaseRequest{"l", "me", "lease", false, round(65), {}, 1})));
   for (const int weight : {0, -1, 1001}) {
     expect_refused(decode<WeightRequest>(encode(WeightRequest{"w", "me", "robot1", weight, 1})), Code::kBadRequest,
                    "w");

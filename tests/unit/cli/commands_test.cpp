@@ -242,12 +242,12 @@ TEST_F(Commands, EveryCommandRefusesASiteFileThatCannotBeUsed) {
   }
 }
 
-TEST_F(Commands, ACellSmallerThanAVoxelIsRefusedBeforeAnybodyIsAsked) {
-  std::ofstream(file("site.yaml")) << "lcm_url: memq://\nresolution: 0.1\n";
-  for (const char* cell : {"0", "0.05", "nan"}) {
+TEST_F(Commands, ACellOfNoSizeIsRefusedBeforeAnybodyIsAsked) {
+  std::ofstream(file("site.yaml")) << "lcm_url: memq://\n";
+  for (const char* cell : {"0", "-1", "nan"}) {
     const Ran ran = run({"downsample", "robot1", cell, "--out", file("c.csv"), "--site", file("site.yaml")});
     EXPECT_EQ(ran.exit, 2);
-    EXPECT_NE(ran.err.find("0.100 m"), std::string::npos) << ran.err;
+    EXPECT_NE(ran.err.find("RES_MISMATCH"), std::string::npos) << ran.err;
   }
 }
 

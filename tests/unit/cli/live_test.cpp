@@ -120,8 +120,7 @@ TEST_F(LiveTest, WhatTheStackWouldRefuseUnreadIsNotAsked) {
 TEST_F(LiveTest, MetresAreTheStacksWhateverTheSiteFileSays) {
   Live live(common);
   EXPECT_EQ(live.site().resolution, 0.05);
-  const BrickDigest digest{1, 17, "map", 0.2, 1, 0, 0, 1};
-  live.bus().every(10'000, [&] { live.bus().publish("out/map/digest", encode(digest)); });
+  live.bus().every(10'000, [&] { live.bus().publish("out/agents", encode(AgentList{1, 0.2, {}})); });
   ASSERT_TRUE(live.take_resolution());
   EXPECT_EQ(live.site().resolution, 0.2);
 }
@@ -183,7 +182,7 @@ TEST_F(LiveTest, CopiesAStreamWhole) {
 /// Why there is no submap of `agent` to wait for, when merge lists `listed` every now and then.
 std::string why_no_submap(const Common& common, const std::string& agent, const std::vector<AgentState>& listed) {
   Live live(common);
-  live.bus().every(20'000, [&] { live.bus().publish("out/agents", encode(AgentList{live.bus().now(), listed})); });
+  live.bus().every(20'000, [&] { live.bus().publish("out/agents", encode(AgentList{live.bus().now(), 0.1, listed})); });
   StreamCopy copy(live, "out/agent/" + agent);
   const auto synced = wait_for_submap(live, copy, agent);
   return synced ? "there is" : synced.error().code;

@@ -91,7 +91,7 @@ TEST_F(LoadArchive, AMergeThatStaysBusyIsToldWithTheIdToGoOnWith) {
 }
 
 TEST_F(LoadArchive, ItWaitsAsLongAsLayersArrive) {
-  AgentList list;
+  AgentList list{0, 0.1, {}};
   list.agents.resize(1);
   list.agents[0].id = "robot1";
   live_->bus().every(300'000, [&] {

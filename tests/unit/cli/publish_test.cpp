@@ -41,7 +41,7 @@ class PublishTest : public testing::Test {
     state.known = static_cast<std::int64_t>(map.known_count());
     state.revision = revision;
     state.synced = true;
-    live->bus().publish("out/agents", encode(AgentList{live->bus().now(), {state}}));
+    live->bus().publish("out/agents", encode(AgentList{live->bus().now(), 0.1, {state}}));
   }
   void ingest_counts(const std::string& counter, std::int64_t count) {
     live->bus().publish("out/status/ingest", encode(ProcessStatus{live->bus().now(), "ingest", 1, {{counter, count}}}));
@@ -88,6 +88,14 @@ TEST_F(PublishTest, HearsThatIngestRefusesItsFrame) {
   ASSERT_TRUE(heard(2));
   ingest_says("file", row_of(kFree), 100);
   EXPECT_TRUE(heard(0)) << "something came in after all";
+}
+
+TEST_F(PublishTest, HearsThatIngestCannotWrite) {
+  const Delivery delivery(*live, kAgent, "file", row_of(kOccupied));
+  ingest_counts("disk_fails", 1);
+  EXPECT_TRUE(soon([&] { return delivery.disk_fails(); }));
+  ingest_counts("disk_fails", 0);
+  EXPECT_TRUE(soon([&] { return !delivery.disk_fails(); }));
 }
 
 TEST_F(PublishTest, WaitsAsLongAsSomethingMoves) {

@@ -92,7 +92,7 @@ TEST(Tables, NoRegionOfConflictsGrowsOverAWholeBuilding) {
     voxels += one.voxels;
   }
   EXPECT_EQ(voxels, 1000);
-  EXPECT_LE(found.regions.size(), 25U);
+  EXPECT_LE(found.regions.size(), 60U);
   EXPECT_NE(to_words(found, 100, 0.1).find("in over "), std::string::npos) << "merge has listed half of them";
 }
 

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "align/align_desk.hpp"
+#include "align/drift_watch.hpp"
+#include "align/layers_node.hpp"
+#include "bus/process.hpp"
+#include "bus/replies.hpp"
+
+namespace concord {
+
+/// Alignment on the bus: hears requests and decisions, says what was found on `out/align`, and watches over those who
+/// are aligned. It moves nobody: what people accept it asks merge for, in their name.
+class AlignNode {
+ public:
+  /// `how` alignments are computed: beside the bus (async), or within it (deferred), where time stands still.
+  AlignNode(const NodeContext& context, std::launch how);
+  AlignNode(const AlignNode&) = delete;
+  AlignNode& operator=(const AlignNode&) = delete;
+
+ private:
+  struct Found {
+    Result<Alignment> alignment;
+    std::int64_t took = 0;  ///< microseconds
+  };
+  struct Running {
+    std::shared_ptr<const AlignTask> task;
+    std::future<Found> found;
+  };
+
+  void on_request(AlignRequest request);
+  void on_decision(const AlignDecision& decision);
+  void tell(const AlignDesk::Case& one);
+  void say(const AlignResult& result);
+
+  void go_on();
+  void begin();
+  void begin_watch();
+  void start(AlignTask task);
+  void finish(const AlignTask& task, const Found& found);
+  void finish_watch(const AlignTask& task, const Found& found);
+  void count();
+
+  NodeContext context_;
+  std::launch how_;
+  AlignSite site_;
+  Replies replies_;
+  LayersNode layers_;
+  AlignDesk desk_;
+  DriftWatch watch_;
+  std::optional<Running> running_;
+};
+
+}  // namespace concord

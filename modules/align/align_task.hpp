@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "align/align.hpp"
+#include "core/alignment.hpp"
+#include "core/brick_map.hpp"
+#include "core/error.hpp"
+#include "core/policy.hpp"
+
+namespace concord {
+
+/// One agent's submap as alignment keeps it, and where it lies.
+struct AlignLayer {
+  std::string frame_id;
+  BrickMap map;
+  std::int64_t revision = 0;
+  bool synced = false;  ///< all that its stream has announced has arrived
+  int weight = 1;
+  std::optional<Transform> T_map_agent;
+};
+/// By agent.
+using AlignLayers = std::map<std::string, AlignLayer>;
+
+/// What the map's lattice and policy are.
+struct AlignSite {
+  double resolution = 0.05;
+  Policy policy = Policy::kMean;
+};
+
+/// All that an alignment is computed from: a copy, so that the layers may go on changing.
+struct AlignTask {
+  struct Part {
+    std::string agent;
+    BrickMap map;
+    Transform T_target_part = Transform::Identity();
+    int weight = 1;
+  };
+  std::string id;
+  AlignSite site;
+  BrickMap source;
+  std::vector<Part> target;  ///< by agent; merged, where there are several
+  std::optional<Transform> T_target_source;
+  Eigen::Vector3d p_source_middle = Eigen::Vector3d::Zero();
+  bool is_recheck = false;  ///< the transform is right to within some voxels, or no longer holds
+  /// As told in the result.
+  AlignResult::Used used_source;
+  std::string target_agent;  ///< empty: the map
+  std::vector<AlignResult::Used> used_layers;
+};
+
+/// The task that a request asks for; `check_task` says at no cost whether there is one. The map as a target is what the
+/// other aligned agents make: an agent that is in it already would agree with itself. Refused: no such agent, or one
+/// without a submap (kNoAgent); in another frame now (kBadFrame); not whole yet (kBusy); itself (kBadRequest); nobody
+/// else is in the map (kNoMap).
+[[nodiscard]] Result<void> check_task(const AlignRequest& request, const AlignLayers& layers);
+[[nodiscard]] Result<AlignTask> make_task(const AlignRequest& request, const AlignLayers& layers,
+                                          const AlignSite& site);
+
+/// Whether an aligned agent lies right among the others: only what lies within `kRecheckMargin` of both is copied.
+/// Refused: as above, and kNotAligned.
+[[nodiscard]] Result<AlignTask> make_recheck(const std::string& agent, const AlignLayers& layers,
+                                             const AlignSite& site);
+inline constexpr double kRecheckMargin = 2.0;  // metres
+/// Whether the others speak against a quarter of the walls that they can speak of: an agent that lies so lies wrong.
+[[nodiscard]] bool contradicts(const Alignment& alignment);
+
+/// A pure function of the task; `threads` does not change a bit of it. Refused: see make_align_map.
+[[nodiscard]] Result<Alignment> carry_out(const AlignTask& task, int threads);
+
+}  // namespace concord

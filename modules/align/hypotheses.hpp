@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "align/align_map.hpp"
+#include "align/evidence.hpp"
+#include "align/gicp.hpp"
+
+namespace concord {
+
+/// A place for the source, refined as far as telling places apart needs.
+struct Hypothesis {
+  Transform T_target_source = Transform::Identity();
+  Support support;
+  int iterations = 0;
+};
+
+/// The places worth judging, best first, each once: from the columns of walls, and the guess itself. With a guess, none
+/// that is farther from it than people's guesses are.
+[[nodiscard]] std::vector<Hypothesis> find_hypotheses(const AlignMap& target, const AlignMap& source,
+                                                      const std::optional<Transform>& guess, int threads);
+
+/// Through all levels, coarse to fine, and to the resolution of the source.
+[[nodiscard]] GicpResult refine_fully(const AlignMap& target, const AlignMap& source, const Transform& T, int threads);
+/// From the finest level on: for what is right to within some voxels.
+[[nodiscard]] GicpResult refine_finely(const AlignMap& target, const AlignMap& source, const Transform& T, int threads);
+
+[[nodiscard]] Eigen::Vector3d middle_of(const AlignMap& map);
+/// Whether two transforms put the source to places that people would tell apart.
+[[nodiscard]] bool are_apart(const Transform& a, const Transform& b, const Eigen::Vector3d& p_source_middle);
+
+}  // namespace concord

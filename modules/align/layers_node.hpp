@@ -1,0 +1,38 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "align/align_task.hpp"
+#include "bus/brick_stream.hpp"
+#include "bus/process.hpp"
+
+namespace concord {
+
+/// A copy of every agent's submap, and where each lies: hears `out/agent/AGENT` and `out/agents`.
+class LayersNode {
+ public:
+  explicit LayersNode(const NodeContext& context);
+  LayersNode(const LayersNode&) = delete;
+  LayersNode& operator=(const LayersNode&) = delete;
+
+  /// As they are now.
+  [[nodiscard]] const AlignLayers& now();
+  /// Whoever merge knows to have sent a submap is here, so that who is not here is nowhere; or that takes too long.
+  [[nodiscard]] bool settled() const;
+
+ private:
+  [[nodiscard]] BrickReceiver* stream_of_channel(const std::string& channel, bool may_begin);
+  [[nodiscard]] std::unique_ptr<BrickReceiver> make_receiver(const std::string& id);
+  void on_agents(const AgentList& list);
+
+  NodeContext context_;
+  std::int64_t start_;
+  AlignLayers layers_;
+  std::optional<AgentList> list_;  ///< the last
+  std::map<std::string, std::unique_ptr<BrickReceiver>> streams_;
+};
+
+}  // namespace concord

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/brick_map.hpp"
+#include "core/error.hpp"
+
+namespace concord {
+
+/// A point farther from the origin than this is refused, as a transform is (make_transform).
+inline constexpr double kMaxSurfaceReach = 10'000.0;         // metres
+inline constexpr std::size_t kMaxSurfacePoints = 4'000'000;  ///< at worst 1.5 GB of cells
+/// The finest map that can be aligned: cells of twice this reach kMaxSurfaceReach.
+inline constexpr double kMinAlignResolution = 0.02;
+
+/// What alignment sees of a map: the centres of the occupied voxels that border free or unknown space, in ascending
+/// order of bricks and voxels; for a cloud, its points. Metres, in the frame of the map.
+using SurfacePoints = std::vector<Eigen::Vector3f>;
+
+/// Refused: over kMaxSurfacePoints of them (kTooLarge), a resolution below kMinAlignResolution or not finite
+/// (kBadResolution), a voxel beyond kMaxSurfaceReach (kOutOfBounds).
+[[nodiscard]] Result<SurfacePoints> surface_points(const BrickMap& map, double resolution);
+
+/// A cloud's points. Refused: too many (kTooLarge), one that is not finite (kNotFinite: a sensor's marks of no return
+/// are the reader's to leave out), one beyond kMaxSurfaceReach (kOutOfBounds).
+[[nodiscard]] Result<SurfacePoints> surface_points(std::span<const Eigen::Vector3f> cloud);
+
+/// Leaves out points that stand alone in a dense surface: where the median point has 7 of the 27 voxels around it
+/// taken, as a wall has, those with fewer than 5 are noise. A sparse surface stays as it is.
+[[nodiscard]] SurfacePoints without_loners(SurfacePoints points, double resolution, int threads);
+
+}  // namespace concord

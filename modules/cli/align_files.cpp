@@ -1,0 +1,101 @@
+#include "cli/align_files.hpp"
+
+#include <chrono>
+#include <filesystem>
+#include <thread>
+
+#include <nlohmann/json.hpp>
+
+#include "align/account.hpp"
+#include "align/cloud.hpp"
+#include "cli/align_page.hpp"
+#include "cli/align_report.hpp"
+#include "cli/cloud_file.hpp"
+#include "cli/map_file.hpp"
+
+namespace concord {
+namespace {
+
+constexpr double kMeshSpacing = 0.025;  // half a voxel of the finest resolution of a cloud
+/// A map that is too fine or too large to be aligned as it is.
+constexpr double kCoarser[] = {0.05, 0.1, 0.2, 0.4};
+
+int all_threads() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
+
+/// Where the finest that can be aligned is asked for.
+bool wants_coarser(const Error& error) { return error.code == Code::kTooLarge || error.code == Code::kBadResolution; }
+
+/// A file as it was read.
+struct Loaded {
+  std::string file;
+  std::optional<OctomapImport> map;
+  PreparedCloud cloud;
+};
+
+Result<Loaded> load(const std::string& file) {
+  const auto extension = std::filesystem::path(file).extension();
+  if (extension != ".pcd" && extension != ".ply") {
+    auto map = load_map(file);
+    if (!map) return tl::unexpected(map.error());
+    return Loaded{file, std::move(*map), {}};
+  }
+  auto points = read_cloud(file, kMeshSpacing);
+  if (!points) return tl::unexpected(points.error());
+  return Loaded{file, std::nullopt, prepare_cloud(std::move(*points))};
+}
+
+Result<AlignMap> prepare(const Loaded& loaded, int threads) {
+  if (!loaded.map) return make_align_map(loaded.cloud.points, loaded.cloud.resolution, threads);
+  auto out = make_align_map(loaded.map->map, loaded.map->resolution, threads);
+  for (const double resolution : kCoarser) {
+    if (out || !wants_coarser(out.error())) break;
+    if (resolution <= loaded.map->resolution) continue;
+    const auto coarse = load_map(loaded.file, resolution);
+    if (!coarse) return tl::unexpected(coarse.error());
+    out = make_align_map(coarse->map, resolution, threads);
+  }
+  return out;
+}
+
+Result<void> draw(const AlignFiles& files, const AlignMap& target, const AlignMap& source, const Alignment& found) {
+  AlignPage page{files.target, files.source,          words(found),         &target,
+                 &source,      Transform::Identity(), found.T_target_source};
+  if (files.T_target_source) page.T_target_source_before = *files.T_target_source;
+  return write_align_page(page, files.picture);
+}
+
+tl::unexpected<Failure> fail_on(const std::string& file, const Error& error) {
+  const bool is_named = error.message.starts_with(file);
+  return fail({error.code, (is_named ? "" : file + ": ") + error.message});
+}
+
+}  // namespace
+
+bool is_alignable_file(const std::string& name) {
+  const auto extension = std::filesystem::path(name).extension();
+  return extension == ".bt" || extension == ".ot" || extension == ".pcd" || extension == ".ply";
+}
+
+Outcome align_files(const AlignFiles& files, const Common& common) {
+  const auto source_file = load(files.source);
+  if (!source_file) return fail_on(files.source, source_file.error());
+  const auto target_file = load(files.target);
+  if (!target_file) return fail_on(files.target, target_file.error());
+  const auto start = std::chrono::steady_clock::now();
+  const int threads = all_threads();
+  const auto source = prepare(*source_file, threads);
+  if (!source) return fail_on(files.source, source.error());
+  const auto target = prepare(*target_file, threads);
+  if (!target) return fail_on(files.target, target.error());
+  const Alignment found = align(*target, *source, files.T_target_source, threads);
+  const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
+  const AlignEvidence evidence = account_of(found, took.count());
+  if (!files.picture.empty()) {
+    const auto drawn = draw(files, *target, *source, found);
+    if (!drawn) return fail(drawn.error());
+  }
+  common.print(to_json(evidence), to_words(evidence));
+  return evidence.accepted() ? Exit::kDone : Exit::kRefused;
+}
+
+}  // namespace concord

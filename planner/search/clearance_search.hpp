@@ -1,0 +1,101 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "planner/lattice/distance_field.hpp"
+
+namespace concord {
+
+/// A path that keeps away from what is blocked.
+struct ClearPath {
+  std::int64_t cost = 0;    ///< of the cells that were found, before they were shortened; in 1/128 of a free cell
+  double length = 0;        ///< cells
+  std::vector<Cell> cells;  ///< as they were found, each a neighbour of the one before
+  std::vector<Cell> turns;  ///< straight lines between cell centres that touch open cells only
+  int least_squared = 0;    ///< distance of its cells to what is blocked, squared, as far as the field reaches
+  std::int64_t expanded = 0;
+};
+
+/// What it costs to be near something blocked: a step costs its length times a factor of 1 out of reach that grows to
+/// `1 + kWorst` beside a blocked cell, with the square of how near it is. In sixteenths.
+class ClearanceCost {
+ public:
+  static constexpr int kUnit = 16;
+  static constexpr int kWorst = 2;
+
+  explicit ClearanceCost(int reach);
+  [[nodiscard]] int factor(std::uint16_t squared) const { return factors_[squared]; }
+
+ private:
+  std::vector<std::uint8_t> factors_;  ///< by squared distance
+};
+
+/// The cheapest path over open cells in eight directions by A* (a diagonal only if both cells beside it are open), with
+/// whole costs in buckets; ties go to what was found last. Then each stretch that an exact straight line can replace
+/// is replaced, if neither the least distance of its cells to what is blocked nor its cost gets worse.
+class ClearanceSearch {
+ public:
+  /// What steps between cells far from everything cost: as 1 to the square root of 2, to a ten-thousandth.
+  static constexpr std::int64_t kStraightStep = 128, kDiagonalStep = 181;
+
+  /// Both must outlive this and be up to date when it is asked.
+  ClearanceSearch(const OpenGrid& grid, const DistanceField& field);
+
+  /// What a search may find and take.
+  struct Limits {
+    std::int64_t cost = std::numeric_limits<std::int64_t>::max();      ///< a path must cost less
+    std::int64_t expanded = std::numeric_limits<std::int64_t>::max();  ///< cells
+  };
+
+  /// Nothing where there is no way within the limits, and where either end is blocked or beyond the grid.
+  [[nodiscard]] std::optional<ClearPath> find(Cell start, Cell goal) { return find(start, goal, {}); }
+  [[nodiscard]] std::optional<ClearPath> find(Cell start, Cell goal, const Limits& limits);
+  /// Of the last `find`, whatever came of it.
+  [[nodiscard]] std::int64_t expanded() const { return expanded_; }
+
+  /// What `find` makes of the cells that it found. @pre they are open, each a neighbour of the one before.
+  [[nodiscard]] ClearPath shorten(std::vector<Cell> cells) const;
+
+  /// What a path between two cells costs at least.
+  [[nodiscard]] static std::int64_t at_least(Cell from, Cell to);
+
+  /// What the cells cost as they are. @pre see shorten.
+  [[nodiscard]] std::int64_t cost(const std::vector<Cell>& cells) const;
+
+ private:
+  static constexpr int kBuckets = 1024;  ///< more than a step and what it leads away from the goal can cost
+  struct State {
+    std::int64_t cost = 0;
+    std::uint32_t query = 0;
+    std::uint8_t came_by = 0;  ///< direction
+    bool is_done = false;
+  };
+
+  void begin(Cell goal);
+  void reach(std::uint32_t index, Cell cell, std::int64_t cost, int direction);
+  void expand(std::uint32_t index, Cell cell);
+  [[nodiscard]] std::uint32_t index_of(Cell cell) const;
+  [[nodiscard]] Cell cell_at(std::uint32_t index) const;
+  [[nodiscard]] std::vector<Cell> trace(Cell start, Cell goal) const;
+  [[nodiscard]] int factor_at(Cell cell) const { return costs_.factor(field_.squared(cell)); }
+  [[nodiscard]] std::int64_t step(Cell from, Cell to) const;
+  [[nodiscard]] std::int64_t line_cost(Cell from, Cell to) const;
+  [[nodiscard]] int least_on_line(Cell from, Cell to) const;
+  const OpenGrid& grid_;
+  const DistanceField& field_;
+  ClearanceCost costs_;
+  std::vector<State> states_;
+  std::uint32_t query_ = 0;
+  std::array<std::vector<std::uint32_t>, kBuckets> buckets_;
+  std::int64_t least_ = 0;    ///< total cost of the present bucket
+  std::int64_t waiting_ = 0;  ///< in all buckets
+  Cell goal_;
+  std::int64_t limit_ = 0;  ///< a path costs less
+  std::int64_t expanded_ = 0;
+};
+
+}  // namespace concord

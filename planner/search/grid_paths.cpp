@@ -1,0 +1,98 @@
+#include "planner/search/grid_paths.hpp"
+
+#include <cmath>
+
+#include "planner/lattice/sight.hpp"
+
+namespace concord {
+namespace {
+
+/// From each turn straight to the last that it sees.
+TautPath pulled(const OpenGrid& grid, const OctilePath& path) {
+  const std::vector<Cell>& turns = path.turns;
+  TautPath taut{0, {turns.front()}, path.expanded};
+  for (std::size_t from = 0; from + 1 < turns.size();) {
+    std::size_t to = turns.size() - 1;
+    while (to > from + 1 && !sees(grid, turns[from], turns[to])) --to;
+    taut.length += std::hypot(turns[to].x - turns[from].x, turns[to].y - turns[from].y);
+    taut.turns.push_back(turns[to]);
+    from = to;
+  }
+  return taut;
+}
+
+}  // namespace
+
+GridPaths::GridPaths(OpenGrid grid, int reach) : grid_(std::move(grid)), reach_(reach) {}
+
+void GridPaths::prepare_components() {
+  if (!components_) components_ = std::make_unique<Components>(grid_);
+}
+
+void GridPaths::prepare_fast() {
+  prepare_components();
+  if (graph_) return;
+  graph_ = std::make_unique<JumpGraph>(grid_);
+  graph_->complete();
+  jump_ = std::make_unique<JumpSearch>(*graph_);
+}
+
+void GridPaths::prepare_any_angle() {
+  prepare_components();
+  if (!any_angle_) any_angle_ = std::make_unique<AnyAngleSearch>(grid_);
+}
+
+void GridPaths::prepare_clear() {
+  prepare_components();
+  if (clearance_) return;
+  field_ = std::make_unique<DistanceField>(grid_, reach_);
+  clearance_ = std::make_unique<ClearanceSearch>(grid_, *field_);
+}
+
+bool GridPaths::connected(Cell a, Cell b) {
+  if (!grid_.is_open(a) || !grid_.is_open(b)) return false;
+  prepare_components();
+  return components_->connected(a, b);
+}
+
+std::optional<OctilePath> GridPaths::fast(Cell start, Cell goal) {
+  if (!connected(start, goal)) return std::nullopt;
+  prepare_fast();
+  return jump_->find(start, goal);
+}
+
+std::optional<TautPath> GridPaths::any_angle(Cell start, Cell goal) {
+  if (!connected(start, goal)) return std::nullopt;
+  prepare_any_angle();
+  if (auto path = any_angle_->find(start, goal)) return path;
+  return pulled(grid_, *fast(start, goal));
+}
+
+std::optional<ClearPath> GridPaths::clear(Cell start, Cell goal, const ClearanceSearch::Limits& limits) {
+  if (!connected(start, goal)) return std::nullopt;
+  prepare_clear();
+  return clearance_->find(start, goal, limits);
+}
+
+std::vector<bool> GridPaths::cells(const Window& window) const {
+  std::vector<bool> open;
+  for (int y = window.low.y; y <= window.high.y; ++y) {
+    for (int x = window.low.x; x <= window.high.x; ++x) open.push_back(grid_.is_open({x, y}));
+  }
+  return open;
+}
+
+bool GridPaths::follow(const Window& window, const std::vector<bool>& before) {
+  const std::vector<bool> now = cells(window);
+  if (now == before) return false;
+  if (components_) components_->update(window);
+  if (graph_) graph_->update(window);
+  if (any_angle_) any_angle_->update(window);
+  if (field_) field_->update(window);
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    if (now[i] && !before[i]) return true;
+  }
+  return false;
+}
+
+}  // namespace concord

@@ -1,0 +1,140 @@
+#include "planner/search/kept_path.hpp"
+
+#include <algorithm>
+
+#include "planner/lattice/sight.hpp"
+
+namespace concord {
+namespace {
+
+/// A repair may look at so many cells for each cell of the stretch, and at no more than a part of what the whole path
+/// took: if it fails, little was lost.
+constexpr std::int64_t kPerCell = 64;
+constexpr std::int64_t kPart = 24;
+/// What took no more cells than that is as soon found anew.
+constexpr std::int64_t kSmall = 2048;
+
+std::int64_t with_share(std::int64_t cost) {
+  return static_cast<std::int64_t>(static_cast<double>(cost) * (1 + KeptPath::kShare));
+}
+
+Window grown(const Window& window, int by) {
+  return {{window.low.x - by, window.low.y - by}, {window.high.x + by, window.high.y + by}};
+}
+
+bool holds(const Window& window, Cell cell) {
+  return cell.x >= window.low.x && cell.x <= window.high.x && cell.y >= window.low.y && cell.y <= window.high.y;
+}
+
+Cell nearest(const Window& window, Cell cell) {
+  return {std::clamp(cell.x, window.low.x, window.high.x), std::clamp(cell.y, window.low.y, window.high.y)};
+}
+
+}  // namespace
+
+KeptPath::Outcome KeptPath::take(std::optional<ClearPath> found) {
+  path_ = std::move(found);
+  if (!path_) return Outcome::kUnreachable;
+  may_improve_ = false;
+  cost_ = path_->cost;
+  expanded_ = path_->expanded;
+  return Outcome::kAnew;
+}
+
+KeptPath::Outcome KeptPath::plan(Cell start, Cell goal) {
+  start_ = start;
+  goal_ = goal;
+  return take(paths_.clear(start, goal));
+}
+
+KeptPath::Outcome KeptPath::follow(const Window& window, bool opened) {
+  if (!path_) return opened ? plan(start_, goal_) : Outcome::kUnreachable;
+  if (!paths_.connected(start_, goal_)) return take(std::nullopt);
+  const std::optional<Stretch> stretch = near(window);
+  if (!stretch || is_open(window)) {
+    if (stretch) path_->cost = paths_.clearance().cost(path_->cells);
+    if (path_->cost <= with_share(cost_)) {
+      may_improve_ = may_improve_ || (opened && could_save(window));
+      return Outcome::kKept;
+    }
+  }
+  may_improve_ = may_improve_ || opened;
+  if (expanded_ > kSmall && repair(*stretch)) return Outcome::kRepaired;
+  return plan(start_, goal_);
+}
+
+bool KeptPath::improve() {
+  if (!path_ || !may_improve_) return false;
+  may_improve_ = false;
+  const auto enough = static_cast<std::int64_t>(static_cast<double>(path_->cost) / (1 + kShare));
+  auto other = paths_.clear(start_, goal_, {.cost = enough});
+  if (!other) return false;
+  (void)take(std::move(other));
+  return true;
+}
+
+/// The cells whose cost the window may have changed.
+std::optional<KeptPath::Stretch> KeptPath::near(const Window& window) const {
+  const Window reach = grown(window, paths_.field().reach());
+  const std::vector<Cell>& cells = path_->cells;
+  const auto is_near = [&](Cell cell) { return holds(reach, cell); };
+  const auto first = std::find_if(cells.begin(), cells.end(), is_near);
+  // The straight lines stay close to the cells, but they may come nearer than these.
+  if (first == cells.end()) {
+    for (std::size_t i = 1; i < path_->turns.size(); ++i) {
+      const Cell a = path_->turns[i - 1];
+      const Cell b = path_->turns[i];
+      const bool apart = std::max(a.x, b.x) < window.low.x || std::min(a.x, b.x) > window.high.x ||
+                         std::max(a.y, b.y) < window.low.y || std::min(a.y, b.y) > window.high.y;
+      if (!apart && !sees(paths_.grid(), a, b)) return Stretch{0, cells.size() - 1};
+    }
+    return std::nullopt;
+  }
+  const auto last = std::find_if(cells.rbegin(), cells.rend(), is_near);
+  return Stretch{static_cast<std::size_t>(first - cells.begin()), static_cast<std::size_t>(cells.rend() - last) - 1};
+}
+
+/// Whether the lines and the cells that come to the window are still open.
+bool KeptPath::is_open(const Window& window) const {
+  const OpenGrid& grid = paths_.grid();
+  const auto blocked = [&](Cell cell) { return holds(window, cell) && !grid.is_open(cell); };
+  if (std::any_of(path_->cells.begin(), path_->cells.end(), blocked)) return false;
+  for (std::size_t i = 1; i < path_->turns.size(); ++i) {
+    if (!sees(grid, path_->turns[i - 1], path_->turns[i])) return false;
+  }
+  // A step over a corner that was filled is not in any cell.
+  for (std::size_t i = 1; i < path_->cells.size(); ++i) {
+    if (holds(grown(window, 1), path_->cells[i]) && !sees(grid, path_->cells[i - 1], path_->cells[i])) return false;
+  }
+  return true;
+}
+
+/// Whether a path by way of the window could cost so much less that it is worth to change. Only there did anything
+/// become cheaper.
+bool KeptPath::could_save(const Window& window) const {
+  const Window reach = grown(window, paths_.field().reach());
+  const std::int64_t least = ClearanceSearch::at_least(start_, nearest(reach, start_)) +
+                             ClearanceSearch::at_least(nearest(reach, goal_), goal_);
+  return with_share(least) < path_->cost;
+}
+
+bool KeptPath::repair(const Stretch& stretch) {
+  const std::vector<Cell>& cells = path_->cells;
+  // Room on both sides to turn off and back, as long as the stretch itself.
+  const std::size_t room = stretch.last - stretch.first + 1;
+  const std::size_t from = stretch.first > room ? stretch.first - room : 0;
+  const std::size_t to = std::min(stretch.last + room, cells.size() - 1);
+  const ClearanceSearch& search = paths_.clearance();
+  std::vector<Cell> whole(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(from) + 1);
+  const std::vector<Cell> after(cells.begin() + static_cast<std::ptrdiff_t>(to), cells.end());
+  const std::int64_t left = with_share(cost_) - search.cost(whole) - search.cost(after);
+  const auto count = static_cast<std::int64_t>(to - from + 1);
+  const auto between = paths_.clear(cells[from], cells[to], {left + 1, std::min(kPerCell * count, expanded_ / kPart)});
+  if (!between) return false;
+  whole.insert(whole.end(), between->cells.begin() + 1, between->cells.end());
+  whole.insert(whole.end(), after.begin() + 1, after.end());
+  path_ = search.shorten(std::move(whole));
+  return true;
+}
+
+}  // namespace concord
