@@ -136,7 +136,8 @@ bool AlignDesk::has_offer(const std::string& agent) const {
   return std::ranges::any_of(cases_, [&](const Case& one) { return one.is_offer && one.request.source == agent; });
 }
 
-/// Nullopt in the result's place: nobody is in the map, and the target founds it.
+/// Refused: the map has moved since (kStale), a frame of the target has ended (kBadFrame), it is in no map
+/// (kNotAligned).
 Result<Transform> AlignDesk::T_map_target(const Case& found, const AlignLayers& layers) const {
   const std::string& target = found.result.target;
   if (target.empty()) {

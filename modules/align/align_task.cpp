@@ -50,14 +50,6 @@ Eigen::AlignedBox3d bounds_of(BrickIndex index, double resolution) {
   return {low, low + Eigen::Vector3d::Constant(kBrickSide * resolution)};
 }
 
-Eigen::AlignedBox3d moved(const Eigen::AlignedBox3d& box, const Transform& T) {
-  Eigen::AlignedBox3d out;
-  for (int corner = 0; corner < 8; ++corner) {
-    out.extend(T * box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner)));
-  }
-  return out;
-}
-
 /// Of what is occupied, in the layer's frame.
 Eigen::AlignedBox3d bounds_of(const BrickMap& map, double resolution) {
   Eigen::AlignedBox3d out;
@@ -71,7 +63,7 @@ Eigen::AlignedBox3d bounds_of(const BrickMap& map, double resolution) {
 BrickMap cut(const AlignLayer& layer, const Transform& T_map_layer, const Eigen::AlignedBox3d& box, double resolution) {
   BrickMap out;
   if (box.isEmpty()) return out;
-  const Eigen::AlignedBox3d near = moved(box, T_map_layer.inverse());
+  const Eigen::AlignedBox3d near = box.transformed(T_map_layer.inverse());
   layer.map.for_each_brick([&](BrickIndex index, const Brick& brick) {
     if (near.intersects(bounds_of(index, resolution))) out.set(index, brick);
   });
@@ -152,15 +144,17 @@ Result<AlignTask> make_recheck(const std::string& agent, const AlignLayers& laye
   task.T_target_source = T;
   task.is_recheck = true;
   const Eigen::Vector3d margin = Eigen::Vector3d::Constant(kRecheckMargin);
-  Eigen::AlignedBox3d near = moved(bounds_of(source.map, site.resolution), T);
-  if (near.isEmpty()) return refuse(Code::kNoMap, agent + " has no surface yet");
-  near = {near.min() - margin, near.max() + margin};
+  const Eigen::AlignedBox3d surface = bounds_of(source.map, site.resolution);
+  if (surface.isEmpty()) return refuse(Code::kNoMap, agent + " has no surface yet");
+  const Eigen::AlignedBox3d there = surface.transformed(T);
+  const Eigen::AlignedBox3d near{there.min() - margin, there.max() + margin};
   Eigen::AlignedBox3d others;
   for (const auto& [id, layer] : layers) {
     if (id == agent || !layer.T_map_agent || !layer.synced) continue;
     BrickMap part = cut(layer, *layer.T_map_agent, near, site.resolution);
     if (part.empty()) continue;
-    others.extend(moved(bounds_of(part, site.resolution), *layer.T_map_agent));
+    const Eigen::AlignedBox3d of_part = bounds_of(part, site.resolution);
+    if (!of_part.isEmpty()) others.extend(of_part.transformed(*layer.T_map_agent));
     add_part(id, layer, std::move(part), *layer.T_map_agent, task);
   }
   if (task.target.empty()) return refuse(Code::kNoMap, "nobody else is in the map near " + agent);

@@ -1,21 +1,17 @@
 #include "align/workers.hpp"
 
-#include <algorithm>
-#include <atomic>
-#include <thread>
-#include <vector>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 namespace concord {
 
 void for_each_chunk(int threads, std::size_t chunks, const std::function<void(std::size_t)>& work) {
-  std::atomic<std::size_t> next{0};
-  const auto run = [&] {
-    for (std::size_t chunk = next++; chunk < chunks; chunk = next++) work(chunk);
-  };
-  const std::size_t helpers = std::min<std::size_t>(std::max(threads, 1), chunks);
-  std::vector<std::jthread> pool;
-  for (std::size_t i = 1; i < helpers; ++i) pool.emplace_back(run);
-  run();
+  if (threads <= 1 || chunks <= 1) {
+    for (std::size_t chunk = 0; chunk < chunks; ++chunk) work(chunk);
+    return;
+  }
+  tbb::task_arena arena(threads);
+  arena.execute([&] { tbb::parallel_for(std::size_t{0}, chunks, work); });
 }
 
 }  // namespace concord

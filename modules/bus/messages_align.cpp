@@ -18,17 +18,9 @@ using wire::bad;
 constexpr std::int64_t kMaxLayers = 1000;  ///< as the site file allows agents
 constexpr std::int64_t kMaxLoose = 6;
 constexpr std::int64_t kReasonLength = 20;
-/// Of a stamp: far from where sums of times would overflow.
-constexpr std::int64_t kLatestTime = std::int64_t{1} << 62;
-
-Result<std::string> agent_of(const std::string& agent) {
-  if (is_name(agent)) return agent;
-  return refuse(Code::kBadName, "agent must be 1 to 40 of A-Z a-z 0-9 . _ -, starting with a letter or digit");
-}
-
 Result<std::string> agent_or_map(const std::string& agent) {
   if (agent.empty()) return agent;
-  return agent_of(agent);
+  return wire::agent_of(agent);
 }
 
 Result<std::string> frame_id_of(const std::string& frame_id) {
@@ -38,12 +30,7 @@ Result<std::string> frame_id_of(const std::string& frame_id) {
 
 Result<std::string> align_id_of(const std::string& id) {
   if (is_request_id(id)) return id;
-  return refuse(Code::kBadRequest, "align_id must be 1 to 80 printable characters");
-}
-
-Result<void> check_time(std::int64_t utime) {
-  if (utime >= 0 && utime <= kLatestTime) return {};
-  return refuse(Code::kBadRequest, "utime is no time; it must be microseconds since 1970");
+  return refuse(Code::kBadRequest, std::string("align_id must be ") + kIdRule);
 }
 
 Result<std::optional<Transform>> guess_of(const align_request_t& in) {
@@ -59,13 +46,6 @@ Result<AlignDecision::Op> op_of(std::int8_t op) {
     case align_decision_t::DROP: return AlignDecision::Op::kDrop;
     default: return refuse(Code::kBadRequest, "op must be ACCEPT or DROP");
   }
-}
-
-/// Who asks, of a message that anyone may send.
-template <class Lcm>
-Result<void> check_asker(const Lcm& in) {
-  if (!is_printable(in.author)) return refuse(Code::kBadRequest, "author must be at most 80 printable characters");
-  return check_time(in.utime);
 }
 
 align_layer_t to_wire(const AlignResult::Used& used) {
@@ -162,10 +142,7 @@ void put_evidence(const AlignEvidence& value, align_result_t& out) {
 }  // namespace
 
 Bytes encode(const AlignRequest& value) {
-  align_request_t out{};
-  out.utime = value.utime;
-  out.request_id = value.id;
-  out.author = value.author;
+  auto out = wire::asked_by<align_request_t>(value, value.utime);
   out.source = value.source;
   out.source_frame_id = value.source_frame_id;
   out.target = value.target;
@@ -177,24 +154,13 @@ Bytes encode(const AlignRequest& value) {
 
 template <>
 Decoded<AlignRequest> decode<AlignRequest>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {fixed(8),
-                                          text(wire::kIdLength),
-                                          text(wire::kIdLength),
-                                          text(wire::kNameLength),
-                                          text(wire::kNameLength),
-                                          text(wire::kNameLength),
-                                          text(wire::kNameLength),
-                                          fixed(1 + wire::kTransformBytes)};
-  const auto in = wire::from_bytes<align_request_t>(bytes, kLayout);
-  if (!in) return bad(in.error());
-  if (!is_request_id(in->request_id)) return wire::bad_id();
-  AlignRequest value;
-  value.id = in->request_id;
-  value.author = in->author;
-  value.utime = in->utime;
-  wire::Filling<AlignRequest> out(std::move(value), in->request_id);
-  out.require(check_asker(*in));
-  out.take(&AlignRequest::source, agent_of(in->source));
+  static constexpr WireField kLayout[] = {record(wire::kAsker),    text(wire::kNameLength),
+                                          text(wire::kNameLength), text(wire::kNameLength),
+                                          text(wire::kNameLength), fixed(1 + wire::kTransformBytes)};
+  const auto in = wire::read_asked<align_request_t>(bytes, kLayout);
+  if (!in) return tl::unexpected(in.error());
+  auto out = wire::asked_by<AlignRequest>(*in);
+  out.take(&AlignRequest::source, wire::agent_of(in->source));
   out.take(&AlignRequest::source_frame_id, frame_id_of(in->source_frame_id));
   out.take(&AlignRequest::target, agent_or_map(in->target));
   out.take(&AlignRequest::target_frame_id, frame_id_of(in->target_frame_id));
@@ -203,10 +169,7 @@ Decoded<AlignRequest> decode<AlignRequest>(std::span<const std::uint8_t> bytes) 
 }
 
 Bytes encode(const AlignDecision& value) {
-  align_decision_t out{};
-  out.utime = value.utime;
-  out.request_id = value.id;
-  out.author = value.author;
+  auto out = wire::asked_by<align_decision_t>(value, value.utime);
   out.op = value.op == AlignDecision::Op::kAccept ? align_decision_t::ACCEPT : align_decision_t::DROP;
   out.align_id = value.align_id;
   return wire::to_bytes(out);
@@ -214,17 +177,10 @@ Bytes encode(const AlignDecision& value) {
 
 template <>
 Decoded<AlignDecision> decode<AlignDecision>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength), text(wire::kIdLength), fixed(1),
-                                          text(wire::kIdLength)};
-  const auto in = wire::from_bytes<align_decision_t>(bytes, kLayout);
-  if (!in) return bad(in.error());
-  if (!is_request_id(in->request_id)) return wire::bad_id();
-  AlignDecision value;
-  value.id = in->request_id;
-  value.author = in->author;
-  value.utime = in->utime;
-  wire::Filling<AlignDecision> out(std::move(value), in->request_id);
-  out.require(check_asker(*in));
+  static constexpr WireField kLayout[] = {record(wire::kAsker), fixed(1), text(wire::kIdLength)};
+  const auto in = wire::read_asked<align_decision_t>(bytes, kLayout);
+  if (!in) return tl::unexpected(in.error());
+  auto out = wire::asked_by<AlignDecision>(*in);
   out.take(&AlignDecision::op, op_of(in->op));
   out.take(&AlignDecision::align_id, align_id_of(in->align_id));
   return out.done();
@@ -268,13 +224,12 @@ Decoded<AlignResult> decode<AlignResult>(std::span<const std::uint8_t> bytes) {
   if (!is_request_id(in->align_id)) return wire::bad_id();
   AlignResult value;
   value.id = in->align_id;
-  value.author = in->author;
   value.open = in->open != 0;
   value.slip = in->slip;
   value.slip_angle = in->slip_angle;
-  value.utime = in->utime;
   wire::Filling<AlignResult> out(std::move(value), {});
-  out.require(check_asker(*in));
+  out.take(&AlignResult::author, wire::author_of(in->author));
+  out.take(&AlignResult::utime, wire::time_of(in->utime));
   out.take(&AlignResult::source, used_of(in->source));
   out.take(&AlignResult::target, agent_or_map(in->target));
   out.take(&AlignResult::layers, layers_of(*in));

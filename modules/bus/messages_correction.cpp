@@ -15,47 +15,7 @@ namespace {
 
 using wire::bad;
 
-constexpr WireField kAsker[] = {fixed(8), text(wire::kIdLength), text(wire::kIdLength)};  ///< utime, id, author
-constexpr WireField kFrame[] = {text(wire::kNameLength), text(wire::kNameLength)};        ///< frame_agent, frame_id
-
-/// The id that the asker gave: of the request, unless it is that of what it makes.
-template <class Lcm>
-auto& id_of(Lcm& message) {
-  if constexpr (requires { message.request_id; }) {
-    return message.request_id;
-  } else {
-    return message.edit_id;
-  }
-}
-
-/// A message with what every correction has.
-template <class Lcm, class Value>
-Lcm asked_by(const Value& value, std::int64_t utime) {
-  Lcm out{};
-  out.utime = utime;
-  id_of(out) = value.id;
-  out.author = value.author;
-  return out;
-}
-
-template <class Value, class Lcm>
-wire::Filling<Value> asked_by(const Lcm& in) {
-  Value out;
-  out.id = id_of(in);
-  out.author = in.author;
-  if constexpr (requires { out.utime; }) out.utime = in.utime;
-  return {std::move(out), id_of(in)};
-}
-
-/// The message, once it is clear who asks.
-template <class Lcm>
-Decoded<Lcm> read(std::span<const std::uint8_t> bytes, std::span<const WireField> layout) {
-  auto in = wire::request_from_bytes<Lcm>(bytes, layout);
-  if (!in) return in;
-  if (const auto author = wire::author_of(in->author); !author) return bad(author.error(), id_of(*in));
-  if (const auto utime = wire::time_of(in->utime); !utime) return bad(utime.error(), id_of(*in));
-  return in;
-}
+constexpr WireField kFrame[] = {text(wire::kNameLength), text(wire::kNameLength)};  ///< frame_agent, frame_id
 
 template <class Lcm>
 void put_frame(const WorkFrame& frame, Lcm& out) {
@@ -160,7 +120,7 @@ Result<Eigen::Vector3d> move_of(const edit_t& in) {
 }  // namespace
 
 Bytes encode(const EditRequest& value) {
-  auto out = asked_by<edit_t>(value, value.utime);
+  auto out = wire::asked_by<edit_t>(value, value.utime);
   out.op = to_wire(value.op);
   out.shape = wire::to_wire(value.shape);
   for (int i = 0; i < 3; ++i) out.move[i] = value.move[i];
@@ -171,10 +131,11 @@ Bytes encode(const EditRequest& value) {
 
 template <>
 Decoded<EditRequest> decode<EditRequest>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {record(kAsker), fixed(1), wire::kShape, fixed(24), record(kFrame), fixed(8)};
-  const auto in = read<edit_t>(bytes, kLayout);
+  static constexpr WireField kLayout[] = {record(wire::kAsker), fixed(1), wire::kShape, fixed(24),
+                                          record(kFrame),       fixed(8)};
+  const auto in = wire::read_asked<edit_t>(bytes, kLayout);
   if (!in) return tl::unexpected(in.error());
-  auto out = asked_by<EditRequest>(*in);
+  auto out = wire::asked_by<EditRequest>(*in);
   out.take(&EditRequest::op, edit_op(in->op));
   out.take(&EditRequest::shape, wire::shape_from_wire(in->shape));
   if (in->op == edit_t::MOVE) out.take(&EditRequest::move, move_of(*in));
@@ -184,7 +145,7 @@ Decoded<EditRequest> decode<EditRequest>(std::span<const std::uint8_t> bytes) {
 }
 
 Bytes encode(const UndoRequest& value) {
-  auto out = asked_by<undo_t>(value, value.utime);
+  auto out = wire::asked_by<undo_t>(value, value.utime);
   out.op = value.redo ? undo_t::REDO : undo_t::UNDO;
   out.edit_id = value.edit_id;
   return wire::to_bytes(out);
@@ -192,17 +153,17 @@ Bytes encode(const UndoRequest& value) {
 
 template <>
 Decoded<UndoRequest> decode<UndoRequest>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {record(kAsker), fixed(1), text(wire::kIdLength)};
-  const auto in = read<undo_t>(bytes, kLayout);
+  static constexpr WireField kLayout[] = {record(wire::kAsker), fixed(1), text(wire::kIdLength)};
+  const auto in = wire::read_asked<undo_t>(bytes, kLayout);
   if (!in) return tl::unexpected(in.error());
-  auto out = asked_by<UndoRequest>(*in);
+  auto out = wire::asked_by<UndoRequest>(*in);
   out.take(&UndoRequest::redo, redo_of(in->op));
   out.take(&UndoRequest::edit_id, edit_id_of(*in));
   return out.done();
 }
 
 Bytes encode(const ZoneRequest& value) {
-  auto out = asked_by<zone_request_t>(value, value.utime);
+  auto out = wire::asked_by<zone_request_t>(value, value.utime);
   out.op = to_wire(value.op);
   out.name = value.name;
   out.kind = wire::to_wire(value.kind);
@@ -214,11 +175,11 @@ Bytes encode(const ZoneRequest& value) {
 
 template <>
 Decoded<ZoneRequest> decode<ZoneRequest>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {record(kAsker), fixed(1), text(wire::kTitleLength), fixed(1), wire::kShape,
-                                          record(kFrame), fixed(8)};
-  const auto in = read<zone_request_t>(bytes, kLayout);
+  static constexpr WireField kLayout[] = {
+      record(wire::kAsker), fixed(1), text(wire::kTitleLength), fixed(1), wire::kShape, record(kFrame), fixed(8)};
+  const auto in = wire::read_asked<zone_request_t>(bytes, kLayout);
   if (!in) return tl::unexpected(in.error());
-  auto out = asked_by<ZoneRequest>(*in);
+  auto out = wire::asked_by<ZoneRequest>(*in);
   out.take(&ZoneRequest::op, zone_op(in->op));
   // Whatever a zone was called, it can be changed and deleted: the rule for names is for new ones.
   const bool is_new = in->op == zone_request_t::ADD;
@@ -233,7 +194,7 @@ Decoded<ZoneRequest> decode<ZoneRequest>(std::span<const std::uint8_t> bytes) {
 }
 
 Bytes encode(const LeaseRequest& value) {
-  auto out = asked_by<lease_request_t>(value, value.utime);
+  auto out = wire::asked_by<lease_request_t>(value, value.utime);
   out.lease_id = value.lease;
   out.op = value.hold ? lease_request_t::HOLD : lease_request_t::FREE;
   out.volume = wire::to_wire(value.volume);
@@ -243,11 +204,11 @@ Bytes encode(const LeaseRequest& value) {
 
 template <>
 Decoded<LeaseRequest> decode<LeaseRequest>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {record(kAsker), text(wire::kIdLength), fixed(1), wire::kShape,
+  static constexpr WireField kLayout[] = {record(wire::kAsker), text(wire::kIdLength), fixed(1), wire::kShape,
                                           record(kFrame)};
-  const auto in = read<lease_request_t>(bytes, kLayout);
+  const auto in = wire::read_asked<lease_request_t>(bytes, kLayout);
   if (!in) return tl::unexpected(in.error());
-  auto out = asked_by<LeaseRequest>(*in);
+  auto out = wire::asked_by<LeaseRequest>(*in);
   out.take(&LeaseRequest::lease, lease_of(in->lease_id));
   out.take(&LeaseRequest::hold, hold_of(in->op));
   if (in->op != lease_request_t::FREE) out.take(&LeaseRequest::volume, wire::volume_from_wire(in->volume));
@@ -256,7 +217,7 @@ Decoded<LeaseRequest> decode<LeaseRequest>(std::span<const std::uint8_t> bytes) 
 }
 
 Bytes encode(const WeightRequest& value) {
-  auto out = asked_by<weight_request_t>(value, value.utime);
+  auto out = wire::asked_by<weight_request_t>(value, value.utime);
   out.agent = value.agent;
   out.weight = value.weight;
   return wire::to_bytes(out);
@@ -264,17 +225,17 @@ Bytes encode(const WeightRequest& value) {
 
 template <>
 Decoded<WeightRequest> decode<WeightRequest>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {record(kAsker), text(wire::kNameLength), fixed(4)};
-  const auto in = read<weight_request_t>(bytes, kLayout);
+  static constexpr WireField kLayout[] = {record(wire::kAsker), text(wire::kNameLength), fixed(4)};
+  const auto in = wire::read_asked<weight_request_t>(bytes, kLayout);
   if (!in) return tl::unexpected(in.error());
-  auto out = asked_by<WeightRequest>(*in);
+  auto out = wire::asked_by<WeightRequest>(*in);
   out.take(&WeightRequest::agent, wire::agent_of(in->agent));
   out.take(&WeightRequest::weight, weight_of(in->weight));
   return out.done();
 }
 
 Bytes encode(const LocaliseRequest& value) {
-  auto out = asked_by<localise_request_t>(value, value.utime);
+  auto out = wire::asked_by<localise_request_t>(value, value.utime);
   out.agent = value.agent;
   out.T_frame_base = wire::to_wire(value.T_frame_base);
   put_frame(value.frame, out);
@@ -283,11 +244,11 @@ Bytes encode(const LocaliseRequest& value) {
 
 template <>
 Decoded<LocaliseRequest> decode<LocaliseRequest>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {record(kAsker), text(wire::kNameLength), fixed(wire::kTransformBytes),
+  static constexpr WireField kLayout[] = {record(wire::kAsker), text(wire::kNameLength), fixed(wire::kTransformBytes),
                                           record(kFrame)};
-  const auto in = read<localise_request_t>(bytes, kLayout);
+  const auto in = wire::read_asked<localise_request_t>(bytes, kLayout);
   if (!in) return tl::unexpected(in.error());
-  auto out = asked_by<LocaliseRequest>(*in);
+  auto out = wire::asked_by<LocaliseRequest>(*in);
   out.take(&LocaliseRequest::agent, wire::agent_of(in->agent));
   out.take(&LocaliseRequest::T_frame_base, wire::from_wire(in->T_frame_base));
   out.take(&LocaliseRequest::frame, frame_of(*in));
@@ -295,7 +256,7 @@ Decoded<LocaliseRequest> decode<LocaliseRequest>(std::span<const std::uint8_t> b
 }
 
 Bytes encode(const TransformRequest& value, std::int64_t utime) {
-  auto out = asked_by<set_transform_t>(value, utime);
+  auto out = wire::asked_by<set_transform_t>(value, utime);
   out.agent = value.agent;
   out.frame_id = value.frame_id;
   out.T_map_agent = wire::to_wire(value.T_map_agent);
@@ -304,11 +265,11 @@ Bytes encode(const TransformRequest& value, std::int64_t utime) {
 
 template <>
 Decoded<TransformRequest> decode<TransformRequest>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {record(kAsker), text(wire::kNameLength), text(wire::kNameLength),
+  static constexpr WireField kLayout[] = {record(wire::kAsker), text(wire::kNameLength), text(wire::kNameLength),
                                           fixed(wire::kTransformBytes)};
-  const auto in = read<set_transform_t>(bytes, kLayout);
+  const auto in = wire::read_asked<set_transform_t>(bytes, kLayout);
   if (!in) return tl::unexpected(in.error());
-  auto out = asked_by<TransformRequest>(*in);
+  auto out = wire::asked_by<TransformRequest>(*in);
   out.take(&TransformRequest::agent, wire::agent_of(in->agent));
   out.take(&TransformRequest::frame_id, frame_id_of(in->frame_id));
   out.take(&TransformRequest::T_map_agent, wire::from_wire(in->T_map_agent));

@@ -130,6 +130,48 @@ class Filling {
   std::optional<Error> error_;
 };
 
+/// What stands first in whatever a person asks for: utime, id, author.
+inline constexpr WireField kAsker[] = {fixed(8), text(kIdLength), text(kIdLength)};
+
+/// The id that the asker gave: of the request, unless it is that of what it makes.
+template <class Lcm>
+[[nodiscard]] auto& id_of(Lcm& message) {
+  if constexpr (requires { message.request_id; }) {
+    return message.request_id;
+  } else {
+    return message.edit_id;
+  }
+}
+
+/// A message with what every asker says.
+template <class Lcm, class Value>
+[[nodiscard]] Lcm asked_by(const Value& value, std::int64_t utime) {
+  Lcm out{};
+  out.utime = utime;
+  id_of(out) = value.id;
+  out.author = value.author;
+  return out;
+}
+
+template <class Value, class Lcm>
+[[nodiscard]] Filling<Value> asked_by(const Lcm& in) {
+  Value out;
+  out.id = id_of(in);
+  out.author = in.author;
+  if constexpr (requires { out.utime; }) out.utime = in.utime;
+  return {std::move(out), id_of(in)};
+}
+
+/// The message, once it is clear who asks.
+template <class Lcm>
+[[nodiscard]] Decoded<Lcm> read_asked(std::span<const std::uint8_t> bytes, std::span<const WireField> layout) {
+  auto in = request_from_bytes<Lcm>(bytes, layout);
+  if (!in) return in;
+  if (const auto author = author_of(in->author); !author) return bad(author.error(), id_of(*in));
+  if (const auto utime = time_of(in->utime); !utime) return bad(utime.error(), id_of(*in));
+  return in;
+}
+
 template <class Points>
 [[nodiscard]] bool all_finite(const Points& points) {
   return std::all_of(points.begin(), points.end(), [](const auto& p) { return p.allFinite(); });

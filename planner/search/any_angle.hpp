@@ -27,7 +27,6 @@ class AnyAngleSearch {
 
   /// Nothing where there is no way over corners, and where either end is blocked or beyond the grid.
   [[nodiscard]] std::optional<TautPath> find(Cell start, Cell goal);
-  [[nodiscard]] std::int64_t expanded() const { return expanded_; }
 
  private:
   struct State {

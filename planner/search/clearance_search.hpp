@@ -54,8 +54,6 @@ class ClearanceSearch {
   /// Nothing where there is no way within the limits, and where either end is blocked or beyond the grid.
   [[nodiscard]] std::optional<ClearPath> find(Cell start, Cell goal) { return find(start, goal, {}); }
   [[nodiscard]] std::optional<ClearPath> find(Cell start, Cell goal, const Limits& limits);
-  /// Of the last `find`, whatever came of it.
-  [[nodiscard]] std::int64_t expanded() const { return expanded_; }
 
   /// What `find` makes of the cells that it found. @pre they are open, each a neighbour of the one before.
   [[nodiscard]] ClearPath shorten(std::vector<Cell> cells) const;

@@ -202,7 +202,7 @@ void JumpGraph::update(const Window& window) {
 
 void JumpGraph::compact() {
   std::vector<Edge> kept;
-  kept.reserve(edge_count());
+  kept.reserve(edges_.size() - garbage_);
   for (Node& node : nodes_) {
     if (!node.is_listed) continue;
     const auto from = edges_.begin() + node.first;

@@ -61,7 +61,6 @@ class JumpGraph {
 
   [[nodiscard]] const OpenGrid& grid() const { return grid_; }
   [[nodiscard]] std::size_t size() const { return nodes_.size(); }
-  [[nodiscard]] std::size_t edge_count() const { return edges_.size() - garbage_; }
   [[nodiscard]] Spot at(NodeId node) const { return nodes_[node].at; }
 
   /// Calls `take(Edge)` for every edge in one of `parts`. @pre the node is alive: an id that an edge gave since

@@ -26,8 +26,6 @@ class JumpSearch {
 
   /// Nothing where there is no way, and where either end is blocked or beyond the grid.
   [[nodiscard]] std::optional<OctilePath> find(Cell start, Cell goal);
-  /// Of the last query.
-  [[nodiscard]] std::int64_t expanded() const { return expanded_; }
 
  private:
   using NodeId = JumpGraph::NodeId;

@@ -13,9 +13,9 @@ none() {
   return 1
 }
 
-# A shell talks to the outside: nodes and their queues, streams and stores, the process frame, programs. All else in a process's folder is its
-# pure core.
-is_shell='(_(node|store|streams|queue)\.[ch]pp|/main\.cpp|^modules/(bus|cli|agent|store)/)'
+# A shell talks to the outside: nodes and their queues, streams and stores, the process frame, programs, what measures a
+# scenario. All else in a process's folder is its pure core.
+is_shell='(_(node|store|streams|queue)\.[ch]pp|/main\.cpp|^modules/(bus|cli|agent|store)/|^planner/scenario/)'
 
 dependencies() {
   local failed=0 process

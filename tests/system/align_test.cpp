@@ -5,12 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "../unit/align/rooms.hpp"
-#include "bus/messages.hpp"
 #include "core/octomap_writer.hpp"
-#include "stack.hpp"
-#include "station.hpp"
+#include "stack_fixture.hpp"
 #include "store/whole_file.hpp"
-#include "system_test.hpp"
 
 // The real processes: two robots who have each seen most of one room, and one who has been in another.
 
@@ -27,24 +24,16 @@ std::string text_of(const Transform& T) {
   return out;
 }
 
-class AlignSystemTest : public SystemTest {
+class AlignSystemTest : public StackFixture {
  protected:
   void SetUp() override {
-    SystemTest::SetUp();
+    StackFixture::SetUp();
     if (IsSkipped()) return;
-    stack_ = std::make_unique<Stack>(network());
     stack_->start_all();
-    person_ = &network().add("person");
-    ear_ = std::make_unique<Station>(*person_);
     person_->inside([this] {
-      listen<AgentList>(ear_->bus(), ear_->counters(), "test", "out/agents",
-                        [this](const std::string&, AgentList list) { agents_ = std::move(list.agents); });
       listen<AlignResult>(ear_->bus(), ear_->counters(), "test", "out/align",
                           [this](const std::string&, AlignResult result) { said_ = std::move(result); });
     });
-  }
-  void TearDown() override {
-    if (stack_ && HasFailure()) ADD_FAILURE() << stack_->logs();
   }
 
   void publish(const std::string& robot, const Points& points) {
@@ -71,10 +60,6 @@ class AlignSystemTest : public SystemTest {
     });
   }
 
-  std::unique_ptr<Stack> stack_;
-  const Host* person_ = nullptr;
-  std::unique_ptr<Station> ear_;
-  std::vector<AgentState> agents_;
   AlignResult said_;
 };
 

@@ -3,11 +3,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "bus/messages.hpp"
 #include "noise.hpp"
-#include "stack.hpp"
-#include "station.hpp"
-#include "system_test.hpp"
+#include "stack_fixture.hpp"
 
 // A native map through the real ingest and merge: saved, taken apart, loaded.
 
@@ -18,28 +15,18 @@ constexpr double kResolution = 0.05;
 const std::string kSomewhere = "\"1.03 -2 0.1 0 0 0.6 0.8\"";
 const std::string kBox = " --box \"0.01 0.01 2.01 0.99 0.04 2.99\"";
 
-class SavedMapSystemTest : public SystemTest {
+class SavedMapSystemTest : public StackFixture {
  protected:
   void SetUp() override {
-    SystemTest::SetUp();
+    StackFixture::SetUp();
     if (IsSkipped()) return;
-    stack_ = std::make_unique<Stack>(network());
-    person_ = &network().add("person");
     stack_->start_all();
     map_ = std::make_unique<StreamCopy>(*person_, "out/map", kResolution);
     agent_ = std::make_unique<StreamCopy>(*person_, "out/agent/robot1", kResolution);
-    agents_ = std::make_unique<Station>(*person_);
-    person_->inside([this] {
-      listen<AgentList>(agents_->bus(), agents_->counters(), "test", "out/agents",
-                        [this](const std::string&, AgentList list) { known_ = list.agents.size(); });
-    });
-  }
-  void TearDown() override {
-    if (stack_ && HasFailure()) ADD_FAILURE() << stack_->logs();
   }
 
   [[nodiscard]] bool happens(const std::function<bool()>& event) {
-    return eventually({&map_->bus(), &agent_->bus(), &agents_->bus()}, event);
+    return eventually({&map_->bus(), &agent_->bus(), &ear_->bus()}, event);
   }
   std::string concord(const std::string& arguments) const { return stack_->concord(*person_, arguments); }
 
@@ -47,8 +34,8 @@ class SavedMapSystemTest : public SystemTest {
   void work_and_save() {
     {
       StreamSource robot(network().add("robot1"), "in/robot1", kResolution, noisy_map(12, 1));
-      ASSERT_TRUE(eventually({&robot.bus(), &agent_->bus(), &agents_->bus()},
-                             [&] { return agent_->synced() && agent_->map() == robot.map() && known_ == 1; }));
+      ASSERT_TRUE(eventually({&robot.bus(), &agent_->bus(), &ear_->bus()},
+                             [&] { return agent_->synced() && agent_->map() == robot.map() && agents_.size() == 1; }));
     }
     concord("set-transform robot1 " + kSomewhere);
     concord("edit add" + kBox);
@@ -59,14 +46,10 @@ class SavedMapSystemTest : public SystemTest {
   }
   void remove_robot() {
     concord("remove robot1");
-    ASSERT_TRUE(happens([&] { return known_ == 0 && map_->synced() && !(map_->map() == before_); }));
+    ASSERT_TRUE(happens([&] { return agents_.empty() && map_->synced() && !(map_->map() == before_); }));
   }
 
-  std::unique_ptr<Stack> stack_;
-  Host* person_ = nullptr;
   std::unique_ptr<StreamCopy> map_, agent_;
-  std::unique_ptr<Station> agents_;
-  std::size_t known_ = 0;
   BrickMap before_;
 };
 

@@ -3,12 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "bus/messages.hpp"
 #include "core/brick.hpp"
 #include "noise.hpp"
-#include "stack.hpp"
-#include "station.hpp"
-#include "system_test.hpp"
+#include "stack_fixture.hpp"
 
 // The real processes on hosts of their own. One agent under the identity makes the map equal to what it sends, so every
 // test compares a consumer's copy of the map with the robot's own bricks, to the byte.
@@ -20,23 +17,8 @@ constexpr double kResolution = 0.05;
 constexpr int kLossPerMille = 50;
 const std::string kIdentity = "\"0 0 0 0 0 0 1\"";
 
-class StackSystemTest : public SystemTest {
+class StackSystemTest : public StackFixture {
  protected:
-  void SetUp() override {
-    SystemTest::SetUp();
-    if (IsSkipped()) return;
-    stack_ = std::make_unique<Stack>(network());
-    person_ = &network().add("person");
-    ear_ = std::make_unique<Station>(*person_);
-    person_->inside([this] {
-      listen<AgentList>(ear_->bus(), ear_->counters(), "test", "out/agents",
-                        [this](const std::string&, AgentList list) { agents_ = std::move(list.agents); });
-    });
-  }
-  void TearDown() override {
-    if (stack_ && HasFailure()) ADD_FAILURE() << stack_->logs();
-  }
-
   /// Who listens from now on; what it holds afterwards is what the stack has said to a late joiner.
   void listen_to_map(const Host& host) { map_ = std::make_unique<StreamCopy>(host, "out/map", kResolution); }
   void add_robot(const Host& host, BrickMap map) {
@@ -59,12 +41,8 @@ class StackSystemTest : public SystemTest {
   }
   void align() const { stack_->concord(*person_, "set-transform robot1 " + kIdentity); }
 
-  std::unique_ptr<Stack> stack_;
-  Host* person_ = nullptr;
-  std::unique_ptr<Station> ear_;
   std::unique_ptr<StreamCopy> map_;
   std::unique_ptr<StreamSource> robot_;
-  std::vector<AgentState> agents_;
 };
 
 TEST_F(StackSystemTest, a_submap_becomes_the_map_over_a_lossy_network) {

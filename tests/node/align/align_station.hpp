@@ -107,7 +107,7 @@ class AlignStation : public ::testing::Test {
     answer(bus_, {request.id, "merge", true, "OK", "placed", 1, 1});
   }
   void say_agents() {
-    AgentList list{bus_.now(), {}};
+    AgentList list{bus_.now(), site_.resolution, {}};
     for (const auto& [id, sent] : sent_) list.agents.push_back(sent.state);
     bus_.publish("out/agents", encode(list));
   }

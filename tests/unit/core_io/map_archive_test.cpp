@@ -320,7 +320,8 @@ TEST(MapArchive, CorrectionsThatCannotFollowAreRefusedWithTheirNumber) {
   EXPECT_EQ(refusal(file_with({edit, correction(4, "u", Correction::Undo{"e", false})})), "OK");
   const Bytes bad = file_with({edit, correction(4, "u", Correction::Undo{"none", false})});
   EXPECT_EQ(refusal(bad), "MALFORMED");
-  EXPECT_NE(why(bad).find("correction 4: no edit or placement before this is called none"), std::string::npos) << why(bad);
+  EXPECT_NE(why(bad).find("correction 4: no edit or placement before this is called none"), std::string::npos)
+      << why(bad);
 }
 
 TEST(MapArchive, CorrectionsOfAnUnknownKindAreRefused) {

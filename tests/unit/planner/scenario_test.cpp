@@ -7,6 +7,7 @@
 
 #include "planner/plan.hpp"
 #include "planner/search.hpp"
+#include "shared_maps.hpp"
 #include "sketch.hpp"
 
 namespace concord {
@@ -77,19 +78,7 @@ TEST_P(Scenario, OptimaAreMetAndPathsAreSafe) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Shared, Scenario,
-                         testing::Values("movingai/16room_000.map", "movingai/AR0300SR.map",
-                                         "movingai/Berlin_0_512.map", "movingai/Boston_0_512.map",
-                                         "movingai/arena2.map", "movingai/brc202d.map", "movingai/den520d.map",
-                                         "movingai/maze512-32-0.map", "movingai/random512-10-0.map",
-                                         "movingai/random512-25-0.map", "buildings_conf/depot_r030.map",
-                                         "buildings_conf/warehouse_r030.map",
-                                         "buildings_conf/warehouse_keepout_r030.map"),
-                         [](const auto& map) {
-                           std::string name = fs::path(map.param).stem().string();
-                           for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(Shared, Scenario, shared_maps(), [](const auto& map) { return map_name(map); });
 
 }  // namespace
 }  // namespace concord
