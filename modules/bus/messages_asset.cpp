@@ -36,10 +36,7 @@ Decoded<Asset> from_wire(const asset_t& in) {
 }  // namespace
 
 Bytes encode(const AssetRequest& value) {
-  asset_request_t out;
-  out.utime = value.utime;
-  out.request_id = value.id;
-  out.author = value.author;
+  auto out = wire::asked_by<asset_request_t>(value, value.utime);
   out.asset = value.asset;
   out.T_map_asset = wire::to_wire(value.T_map_asset);
   return wire::to_bytes(out);
@@ -47,16 +44,12 @@ Bytes encode(const AssetRequest& value) {
 
 template <>
 Decoded<AssetRequest> decode<AssetRequest>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength), text(wire::kIdLength),
-                                          text(wire::kNameLength), fixed(wire::kTransformBytes)};
-  const auto in = wire::request_from_bytes<asset_request_t>(bytes, kLayout);
+  static constexpr WireField kLayout[] = {record(wire::kAsker), text(wire::kNameLength), fixed(wire::kTransformBytes)};
+  const auto in = wire::read_asked<asset_request_t>(bytes, kLayout);
   if (!in) return tl::unexpected(in.error());
-  wire::Filling<AssetRequest> out({}, in->request_id);
+  auto out = wire::asked_by<AssetRequest>(*in);
   if (in->request_id.size() > kMostAssetId)
     out.require(refuse(Code::kBadRequest, "request id must be at most 70 bytes"));
-  out.take(&AssetRequest::id, Result<std::string>(in->request_id));
-  out.take(&AssetRequest::author, wire::author_of(in->author));
-  out.take(&AssetRequest::utime, wire::time_of(in->utime));
   out.take(&AssetRequest::asset, name_of(in->asset));
   out.take(&AssetRequest::T_map_asset, wire::from_wire(in->T_map_asset));
   return out.done();

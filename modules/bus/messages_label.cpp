@@ -121,10 +121,7 @@ Decoded<LabelSlot> from_wire(const label_slot_t& in) {
 }  // namespace
 
 Bytes encode(const LabelRequest& value) {
-  label_request_t out{};
-  out.utime = value.utime;
-  out.request_id = value.id;
-  out.author = value.author;
+  auto out = wire::asked_by<label_request_t>(value, value.utime);
   out.op = to_table(kOps, value.op);
   out.name = value.name;
   out.label = static_cast<std::int32_t>(value.of.label);
@@ -139,22 +136,12 @@ Bytes encode(const LabelRequest& value) {
 
 template <>
 Decoded<LabelRequest> decode<LabelRequest>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {fixed(8),
-                                          text(wire::kIdLength),
-                                          text(wire::kIdLength),
-                                          fixed(1),
-                                          text(wire::kTitleLength),
-                                          fixed(4 * 3),
-                                          text(wire::kIdLength),
-                                          wire::kShape,
-                                          text(wire::kNameLength),
-                                          text(wire::kNameLength)};
-  const auto in = wire::request_from_bytes<label_request_t>(bytes, kLayout);
+  static constexpr WireField kLayout[] = {
+      record(wire::kAsker),  fixed(1),     text(wire::kTitleLength), fixed(4 * 3),
+      text(wire::kIdLength), wire::kShape, text(wire::kNameLength),  text(wire::kNameLength)};
+  const auto in = wire::read_asked<label_request_t>(bytes, kLayout);
   if (!in) return tl::unexpected(in.error());
-  wire::Filling<LabelRequest> out({}, in->request_id);
-  out.take(&LabelRequest::id, Result<std::string>(in->request_id));
-  out.take(&LabelRequest::author, wire::author_of(in->author));
-  out.take(&LabelRequest::utime, wire::time_of(in->utime));
+  auto out = wire::asked_by<LabelRequest>(*in);
   out.take(&LabelRequest::op, from_table(kOps, in->op, "op is none of label_request_t's"));
   out.take(&LabelRequest::name, empty_or_title(in->name));
   out.take(&LabelRequest::of, instance_of(in->label, in->instance));

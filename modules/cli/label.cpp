@@ -90,6 +90,7 @@ tl::expected<void, Failure> fill(const Options& options, Live& live, Copies& cop
 
 Outcome label(const Options& options, const Common& common) {
   Live live(common);
+  if (const auto taken = live.take_resolution(); !taken) return tl::unexpected(taken.error());
   Copies copies;
   LabelRequest request;
   request.id = live.id_or_new(options.id);

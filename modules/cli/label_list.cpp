@@ -12,8 +12,7 @@ namespace concord {
 
 tl::expected<std::vector<LabelInstance>, Failure> request_labels(Live& live, LabelQuery query) {
   query.id = live.new_id();
-  const auto parts = ask_in_parts<LabelList>(
-      live, {"in/label_query", encode(query, live.bus().now()), query.id, "semantic"}, "out/label_list");
+  const auto parts = ask_in_parts<LabelList>(live, Respondent{"in/label_query", "semantic", "out/label_list"}, query);
   if (!parts) return tl::unexpected(parts.error());
   std::vector<LabelInstance> all;
   for (const LabelList& part : *parts) all.insert(all.end(), part.instances.begin(), part.instances.end());

@@ -107,6 +107,7 @@ Outcome labels(const Options& options, const Common& common) {
   const auto query = query_of(options);
   if (!query) return fail(query.error());
   Live live(common);
+  if (const auto taken = live.take_resolution(); !taken) return tl::unexpected(taken.error());
   if (!options.load.empty()) return load(options, live, common);
   if (!options.out.empty()) return save(options.out, live, common);
   const auto found = request_labels(live, *query);
