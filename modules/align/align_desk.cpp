@@ -15,12 +15,12 @@ std::string founding_id(const std::string& id) {
   return (id.size() <= kLongestStem ? id : id.substr(id.size() - kLongestStem)) + ".target";
 }
 
-bool has_frame(const AlignLayers& layers, const AlignResult::Used& used) {
+bool has_frame(const AgentLayers& layers, const AlignResult::Used& used) {
   const auto it = layers.find(used.agent);
   return it != layers.end() && it->second.frame_id == used.frame_id;
 }
 
-bool lies_at(const AlignLayers& layers, const std::string& agent, const Transform& T_map_agent) {
+bool lies_at(const AgentLayers& layers, const std::string& agent, const Transform& T_map_agent) {
   const auto it = layers.find(agent);
   return it != layers.end() && it->second.T_map_agent && it->second.T_map_agent->isApprox(T_map_agent, 1e-9);
 }
@@ -138,7 +138,7 @@ bool AlignDesk::has_offer(const std::string& agent) const {
 
 /// Refused: the map has moved since (kStale), a frame of the target has ended (kBadFrame), it is in no map
 /// (kNotAligned).
-Result<Transform> AlignDesk::T_map_target(const Case& found, const AlignLayers& layers) const {
+Result<Transform> AlignDesk::T_map_target(const Case& found, const AgentLayers& layers) const {
   const std::string& target = found.result.target;
   if (target.empty()) {
     for (const auto& [agent, T_map_agent] : found.placed) {
@@ -155,7 +155,7 @@ Result<Transform> AlignDesk::T_map_target(const Case& found, const AlignLayers& 
   return refuse(Code::kNotAligned, target + " is in no map itself; align it to the map first");
 }
 
-Result<AlignDesk::Acceptance> AlignDesk::accept(const AlignDecision& decision, const AlignLayers& layers,
+Result<AlignDesk::Acceptance> AlignDesk::accept(const AlignDecision& decision, const AgentLayers& layers,
                                                 std::int64_t now) {
   Case* found = find(decision.align_id);
   if (found == nullptr) return expired(decision.align_id);

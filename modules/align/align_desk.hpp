@@ -62,7 +62,7 @@ class AlignDesk {
     TransformRequest request;
     bool is_founding = false;
   };
-  [[nodiscard]] Result<Acceptance> accept(const AlignDecision& decision, const AlignLayers& layers, std::int64_t now);
+  [[nodiscard]] Result<Acceptance> accept(const AlignDecision& decision, const AgentLayers& layers, std::int64_t now);
   /// Refused (kExpired): nothing of that id is kept; (kConflict): it was accepted.
   [[nodiscard]] Result<void> drop(const AlignDecision& decision);
 
@@ -73,7 +73,7 @@ class AlignDesk {
 
  private:
   [[nodiscard]] Case* find(const std::string& id);
-  [[nodiscard]] Result<Transform> T_map_target(const Case& found, const AlignLayers& layers) const;
+  [[nodiscard]] Result<Transform> T_map_target(const Case& found, const AgentLayers& layers) const;
   void forget_the_oldest();
 
   std::deque<Case> cases_;  ///< in the order in which they were asked

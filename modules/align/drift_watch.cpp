@@ -12,7 +12,7 @@ constexpr double kSlipRadians = M_PI / 180.0;
 
 }  // namespace
 
-std::optional<std::string> DriftWatch::next(const AlignLayers& layers, std::int64_t now) const {
+std::optional<std::string> DriftWatch::next(const AgentLayers& layers, std::int64_t now) const {
   if (now < not_before_) return std::nullopt;
   const auto aligned =
       std::ranges::count_if(layers, [](const auto& entry) { return entry.second.T_map_agent.has_value(); });
@@ -33,7 +33,7 @@ std::optional<std::string> DriftWatch::next(const AlignLayers& layers, std::int6
   return chosen != nullptr ? std::optional(*chosen) : std::nullopt;
 }
 
-void DriftWatch::looked_at(const std::string& agent, const AlignLayers& layers, std::int64_t took, std::int64_t now) {
+void DriftWatch::looked_at(const std::string& agent, const AgentLayers& layers, std::int64_t took, std::int64_t now) {
   const auto it = layers.find(agent);
   if (it == layers.end() || !it->second.T_map_agent) {
     seen_.erase(agent);

@@ -19,9 +19,9 @@ class DriftWatch {
 
   /// The aligned agent that was looked at the longest ago, of those that sent something since or were moved; none: not
   /// now.
-  [[nodiscard]] std::optional<std::string> next(const AlignLayers& layers, std::int64_t now) const;
+  [[nodiscard]] std::optional<std::string> next(const AgentLayers& layers, std::int64_t now) const;
   /// It was looked at as it is in `layers`, which took so many microseconds.
-  void looked_at(const std::string& agent, const AlignLayers& layers, std::int64_t took, std::int64_t now);
+  void looked_at(const std::string& agent, const AgentLayers& layers, std::int64_t took, std::int64_t now);
 
  private:
   struct Seen {

@@ -30,13 +30,21 @@ inline constexpr std::size_t kMaxInstances = 65'000;      ///< ever
 inline constexpr std::int64_t kMaxLabelVoxels = 500'000;  ///< of one label, as of one edit
 inline constexpr std::int64_t kMaxAllLabelVoxels = 50'000'000;
 
+/// What a label lies on: the frame of an agent, with which it moves, or the map.
+struct LabelAnchor {
+  std::string agent;     ///< empty: the map
+  std::string frame_id;  ///< the agent's; in another one it is not what was labelled
+  Transform T_map_agent = Transform::Identity();
+};
+
 struct LabelCorrection {
-  /// Claims voxels of the map's lattice. The later claim has a voxel.
+  /// Claims voxels of the map's lattice, as they lay then. The later claim has a voxel.
   struct Claim {
     InstanceId of;
     std::string class_name;          ///< of a class that this one names first; else empty
     std::vector<VoxelIndex> voxels;  ///< sorted and unique
-    std::string edit_id;  ///< the edit it came with (an injected asset): it holds while that edit does; else empty
+    std::string edit_id = {};  ///< the edit it came with (an injected asset): it holds while that edit does; else empty
+    LabelAnchor anchor = {};
   };
   struct Rename {
     ClassId label = 0;

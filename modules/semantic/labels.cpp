@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "semantic/anchor.hpp"
+
 namespace concord {
 namespace {
 
@@ -23,7 +25,7 @@ struct Labels::Apply {
   void operator()(const Claim& claim) const {
     Step& kept = labels.steps_[step];
     kept.is_claim = true;
-    kept.claim = {claim.of, claim.class_name, {}, claim.edit_id};
+    kept.claim = {claim.of, claim.class_name, {}, claim.edit_id, claim.anchor};
     kept.bricks = masks_of(claim.voxels).sorted();
     if (!claim.class_name.empty()) labels.classes_[claim.of.label].name = claim.class_name;
     labels.give(claim.of);
@@ -36,6 +38,10 @@ struct Labels::Apply {
     }
     made.of = claim.of;
     made.count = static_cast<std::int64_t>(claim.voxels.size());
+    if (claim.anchor.agent.empty()) return;
+    Frame& frame = labels.frames_[{claim.anchor.agent, claim.anchor.frame_id}];
+    frame.claims.push_back(step);
+    if (frame.T_map_agent) labels.lay(step, *frame.T_map_agent, touched);
   }
   void operator()(const Rename& rename) const {
     labels.renames_.push_back(step);
@@ -86,6 +92,39 @@ void Labels::set_edit(const std::string& edit_id, bool active, BrickSet& touched
   if (steps == by_edit_.end()) return;
   for (const std::uint32_t step : steps->second) {
     for (const auto& [index, mask] : steps_[step].bricks) touched.insert(index);
+  }
+}
+
+bool Labels::is_news(const LabelAnchor& where) const {
+  const auto frame = frames_.find({where.agent, where.frame_id});
+  if (frame == frames_.end() || frame->second.claims.empty()) return false;
+  return !frame->second.T_map_agent || frame->second.T_map_agent->matrix() != where.T_map_agent.matrix();
+}
+
+void Labels::place(const LabelAnchor& where, BrickSet& touched) {
+  Frame& frame = frames_[{where.agent, where.frame_id}];
+  frame.T_map_agent = where.T_map_agent;
+  for (const std::uint32_t step : frame.claims) lay(step, where.T_map_agent, touched);
+}
+
+/// Takes a claim from the bricks where it lies, and to where it lies from now on.
+void Labels::lay(std::uint32_t step, const Transform& T_map_agent, BrickSet& touched) {
+  Step& kept = steps_[step];
+  const auto& claimed = kept.claimed.empty() ? kept.bricks : kept.claimed;
+  auto now = followed(claimed, kept.claim.anchor.T_map_agent, T_map_agent, resolution_).sorted();
+  if (now == kept.bricks) return;
+  for (const auto& [index, mask] : kept.bricks) {
+    touched.insert(index);
+    const auto claims = by_brick_.find(index);
+    std::erase(claims->second, step);
+    if (claims->second.empty()) by_brick_.erase(claims);
+  }
+  if (kept.claimed.empty()) kept.claimed = std::move(kept.bricks);
+  kept.bricks = std::move(now);
+  for (const auto& [index, mask] : kept.bricks) {
+    touched.insert(index);
+    auto& claims = by_brick_[index];
+    claims.insert(std::ranges::lower_bound(claims, step), step);
   }
 }
 
@@ -156,12 +195,22 @@ BrickSet Labels::bricks_of(InstanceId of) const {
 }
 
 std::optional<InstanceId> Labels::holder_of(std::uint32_t claim) const {
-  const Step& step = steps_[claim];
-  if (!step.active) return std::nullopt;
-  if (!step.claim.edit_id.empty()) {
-    const auto edit = edits_.find(step.claim.edit_id);
+  const std::string& edit_id = steps_[claim].claim.edit_id;
+  if (!edit_id.empty()) {
+    const auto edit = edits_.find(edit_id);
     if (edit == edits_.end() || !edit->second) return std::nullopt;
   }
+  return owner_of(claim);
+}
+
+std::optional<InstanceId> Labels::owner_of(const std::string& claim_id) const {
+  const auto it = by_id_.find(claim_id);
+  return it != by_id_.end() && steps_[it->second].is_claim ? owner_of(it->second) : std::nullopt;
+}
+
+std::optional<InstanceId> Labels::owner_of(std::uint32_t claim) const {
+  const Step& step = steps_[claim];
+  if (!step.active) return std::nullopt;
   InstanceId holder = step.claim.of;
   for (std::uint32_t after = claim;;) {
     // The first active change after it that concerns its holder, or the holder's class.

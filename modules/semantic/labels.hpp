@@ -21,6 +21,9 @@ class Labels {
  public:
   using What = decltype(LabelCorrection::what);
 
+  /// @param resolution of the map, metres.
+  explicit Labels(double resolution) : resolution_(resolution) {}
+
   [[nodiscard]] std::int64_t revision() const { return made_.empty() ? 0 : made_.back().revision; }
 
   /// Refused: a name that is none (kBadName) or another class's (kExists); a class, instance or correction that is not
@@ -28,6 +31,12 @@ class Labels {
   /// would leave two classes with one name (kConflict); over a cap (kTooLarge).
   /// @param voxels what a kLabel or kRestore selects; sorted and unique. @pre not kDelete.
   [[nodiscard]] Result<What> check(const LabelRequest& request, const std::vector<VoxelIndex>& voxels) const;
+
+  /// Whether a correction from outside (a map file) is one, and may be the next. Refused: as by `check`; a revision
+  /// that is not above the last one's (kStale), an id that was there (kExists), texts that are none (kBadName), voxels
+  /// that are not sorted and unique, numbers that are none (kBadRequest), an anchor's transform that is none
+  /// (kBadTransform).
+  [[nodiscard]] Result<void> follows(const LabelCorrection& correction) const;
 
   /// Adds the bricks whose labels may change to `touched`. @pre checked in this state; the revision is above all
   /// before.
@@ -39,6 +48,13 @@ class Labels {
   /// Whether some claim came with this edit; whether merge has said if it holds.
   [[nodiscard]] bool is_edit_of_claim(const std::string& edit_id) const { return by_edit_.contains(edit_id); }
   [[nodiscard]] bool knows_edit(const std::string& edit_id) const { return edits_.contains(edit_id); }
+
+  /// An agent's frame lies there now: the labels on it go along, be they claimed before or after. What nothing was said
+  /// of lies where it was claimed. Costs what its labels have voxels.
+  void place(const LabelAnchor& where, BrickSet& touched);
+
+  /// Whether `place` would say something new of claims that there are.
+  [[nodiscard]] bool is_news(const LabelAnchor& where) const;
 
   /// A claim whose edit merge has said nothing of.
   struct Waiting {
@@ -60,6 +76,9 @@ class Labels {
   };
   /// Null: no correction has this id.
   [[nodiscard]] const Made* find(const std::string& id) const;
+
+  /// Whose a claim is, be its edit there or not; nothing if it is undone or taken off, or no claim.
+  [[nodiscard]] std::optional<InstanceId> owner_of(const std::string& claim_id) const;
 
   [[nodiscard]] std::optional<InstanceId> at(VoxelIndex voxel) const;
 
@@ -83,14 +102,18 @@ class Labels {
 
  private:
   struct Step {
-    LabelCorrection::Claim claim;  ///< without its voxels
-    std::vector<std::pair<BrickIndex, VoxelMask>> bricks;
-    What what = LabelCorrection::TakeOff{};  ///< not heeded for a claim
+    LabelCorrection::Claim claim;                           ///< without its voxels
+    std::vector<std::pair<BrickIndex, VoxelMask>> claimed;  ///< as it lay then; none if it lies so now
+    std::vector<std::pair<BrickIndex, VoxelMask>> bricks;   ///< where it lies now
+    What what = LabelCorrection::TakeOff{};                 ///< not heeded for a claim
     bool is_claim = false;
     bool active = true;
   };
 
   struct Apply;
+  struct Follow;
+  [[nodiscard]] Result<void> check_voxels(const std::vector<VoxelIndex>& voxels) const;
+  [[nodiscard]] Result<void> check_room(InstanceId of) const;
   [[nodiscard]] Result<What> check_claim(const LabelRequest& request, const std::vector<VoxelIndex>& voxels) const;
   [[nodiscard]] Result<LabelCorrection::Claim> numbered(const LabelRequest& request) const;
   [[nodiscard]] Result<LabelCorrection::Claim> restored(const LabelRequest& request) const;
@@ -99,12 +122,17 @@ class Labels {
   [[nodiscard]] Result<What> check_take_off(const LabelRequest& request) const;
   [[nodiscard]] Result<What> check_undo(const LabelRequest& request) const;
   [[nodiscard]] Result<void> check_instance(InstanceId of) const;
-  /// Whose a claim is now; nothing if it does not hold.
+  [[nodiscard]] Result<void> check_new_name(const std::string& name) const;
+  /// Whose a claim is now; nothing if it is undone or taken off.
+  [[nodiscard]] std::optional<InstanceId> owner_of(std::uint32_t step) const;
+  /// The same; nothing either if the edit that it came with does not hold.
   [[nodiscard]] std::optional<InstanceId> holder_of(std::uint32_t step) const;
   [[nodiscard]] std::map<ClassId, std::string> names_if(std::uint32_t step, bool active) const;
   void touch(InstanceId of, BrickSet& touched) const;
+  void lay(std::uint32_t step, const Transform& T_map_agent, BrickSet& touched);
   void give(InstanceId of);
 
+  double resolution_;
   std::deque<Made> made_;
   std::map<std::string, std::uint32_t> by_id_;  ///< index into made_ and steps_
   std::deque<Step> steps_;
@@ -113,6 +141,11 @@ class Labels {
   std::map<InstanceId, std::vector<std::uint32_t>> changes_;  ///< TakeOff and Reassign, by what they concern
   std::map<std::string, std::vector<std::uint32_t>> by_edit_;
   std::map<std::string, bool> edits_;
+  struct Frame {
+    std::vector<std::uint32_t> claims;     ///< on it
+    std::optional<Transform> T_map_agent;  ///< as was last said
+  };
+  std::map<std::pair<std::string, std::string>, Frame> frames_;  ///< by agent and frame_id
   std::vector<std::uint32_t> renames_;
   std::unordered_map<BrickIndex, std::vector<std::uint32_t>, IndexHash> by_brick_;  ///< claims, ascending
   std::size_t instances_ = 0;

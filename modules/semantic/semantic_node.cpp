@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "bus/recent_answers.hpp"
+#include "semantic/anchor.hpp"
 
 namespace concord {
 namespace {
@@ -33,6 +34,8 @@ SemanticNode::SemanticNode(const NodeContext& context)
     : context_(context),
       replies_(context),
       store_(context.site.state / "semantic.db", context.site.resolution),
+      layers_(context),
+      labels_(context.site.resolution),
       view_(labels_, map_, context.site.resolution),
       map_receiver_(context.bus, context.counters, {.stream = "out/map", .resolution = context.site.resolution},
                     {.on_frame =
@@ -61,7 +64,9 @@ SemanticNode::SemanticNode(const NodeContext& context)
       assets_node_(context, {labels_,
                              [this](const std::string& id, const std::string& author, std::uint64_t content,
                                     Labels::What what) { return commit(id, author, content, std::move(what)); },
-                             [this](const BrickSet& touched) { refresh(touched); }}) {
+                             [this](const BrickSet& touched) { refresh(touched); }}),
+      files_node_(context, {labels_, [this](const auto& visit) { return store_.for_each(visit); },
+                            [this](const std::vector<LabelCorrection>& all) { return commit(all); }}) {
   restore();
   listen_to_the_map();
   Bus& bus = context_.bus;
@@ -92,10 +97,24 @@ void SemanticNode::listen_to_the_map() {
   listen<BrickDigest>(bus, context_.counters, context_.process, "out/map/digest",
                       [this](const std::string&, const BrickDigest& digest) { map_receiver_.on_digest(digest); });
   listen<AgentList>(bus, context_.counters, context_.process, "out/agents",
-                    [this](const std::string&, const AgentList& list) {
-                      agents_.clear();
-                      for (const AgentState& agent : list.agents) agents_[agent.id] = agent;
-                    });
+                    [this](const std::string&, const AgentList& list) { on_agents(list); });
+}
+
+/// A label goes along with the agent that it lies on. Where that was last is kept: it may be gone when we start again.
+void SemanticNode::on_agents(const AgentList& list) {
+  agents_.clear();
+  BrickSet touched;
+  for (const AgentState& agent : list.agents) {
+    agents_[agent.id] = agent;
+    const LabelAnchor now{agent.id, agent.frame_id, agent.T_map_agent};
+    if (!agent.aligned || !labels_.is_news(now)) continue;
+    if (const auto kept = store_.put(now); !kept) {
+      context_.counters.refused("out/agents", kept.error());
+      continue;
+    }
+    labels_.place(now, touched);
+  }
+  refresh(touched);
 }
 
 void SemanticNode::restore() {
@@ -105,6 +124,9 @@ void SemanticNode::restore() {
     return {};
   });
   if (!done) throw std::runtime_error(done.error().message);
+  const auto placements = store_.placements();
+  if (!placements) throw std::runtime_error(placements.error().message);
+  for (const LabelAnchor& placed : *placements) labels_.place(placed, touched);
   spdlog::info("restored labels up to revision {}", labels_.revision());
 }
 
@@ -123,10 +145,14 @@ void SemanticNode::on_request(const LabelRequest& request) {
 
 Result<void> SemanticNode::commit(const std::string& id, const std::string& author, std::uint64_t content,
                                   Labels::What what) {
-  const LabelCorrection correction{labels_.revision() + 1, id, author, context_.bus.now(), content, std::move(what)};
-  if (const auto stored = store_.put(correction); !stored) return stored;
+  return commit({{labels_.revision() + 1, id, author, context_.bus.now(), content, std::move(what)}});
+}
+
+/// All of them or, where the disk says no, none.
+Result<void> SemanticNode::commit(const std::vector<LabelCorrection>& corrections) {
+  if (const auto stored = store_.put(corrections); !stored) return stored;
   BrickSet touched;
-  labels_.apply(correction, touched);
+  for (const LabelCorrection& correction : corrections) labels_.apply(correction, touched);
   refresh(touched);
   label_stream_.send_now();
   has_new_slots_ = true;
@@ -156,14 +182,20 @@ void SemanticNode::grant(const std::string& id, const Labels::Made& made, const 
   replies_.grant(id, made.revision, std::max<std::int64_t>(made.count, 1), what + message);
 }
 
-Result<Labels::What> SemanticNode::check(const LabelRequest& request) const {
+Result<Labels::What> SemanticNode::check(const LabelRequest& request) {
   std::vector<VoxelIndex> voxels;
   if (request.op == LabelRequest::Op::kLabel || request.op == LabelRequest::Op::kRestore) {
     auto taken = selected(request);
     if (!taken) return tl::unexpected(taken.error());
     voxels = std::move(*taken);
   }
-  return labels_.check(request, voxels);
+  auto what = labels_.check(request, voxels);
+  if (!what) return what;
+  if (auto* claim = std::get_if<LabelCorrection::Claim>(&*what)) {
+    if (!layers_.settled()) return refuse(Code::kBusy, "the submaps have not all been heard; ask again in a second");
+    claim->anchor = anchor_of(claim->voxels, layers_.now(), context_.site.resolution);
+  }
+  return what;
 }
 
 /// What is occupied in the map now, of what a shape takes.

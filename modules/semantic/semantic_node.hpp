@@ -5,11 +5,13 @@
 #include <string>
 
 #include "bus/brick_stream.hpp"
+#include "bus/layers_node.hpp"
 #include "bus/messages_label.hpp"
 #include "bus/process.hpp"
 #include "bus/replies.hpp"
 #include "bus/reply_queue.hpp"
 #include "semantic/assets_node.hpp"
+#include "semantic/label_files_node.hpp"
 #include "semantic/label_view.hpp"
 #include "semantic/labels.hpp"
 #include "semantic/semantic_store.hpp"
@@ -27,15 +29,17 @@ class SemanticNode {
  private:
   void listen_to_the_map();
   void restore();
+  void on_agents(const AgentList& list);
   void on_request(const LabelRequest& request);
   void on_delete(const LabelRequest& request);
   void on_query(const LabelQuery& query);
   [[nodiscard]] bool repeat(const LabelRequest& request, std::uint64_t content);
   [[nodiscard]] Result<std::vector<VoxelIndex>> selected(const LabelRequest& request) const;
   [[nodiscard]] Result<Transform> T_map_frame(const WorkFrame& frame) const;
-  [[nodiscard]] Result<Labels::What> check(const LabelRequest& request) const;
+  [[nodiscard]] Result<Labels::What> check(const LabelRequest& request);
   [[nodiscard]] Result<void> commit(const std::string& id, const std::string& author, std::uint64_t content,
                                     Labels::What what);
+  [[nodiscard]] Result<void> commit(const std::vector<LabelCorrection>& corrections);
   void grant(const std::string& id, const Labels::Made& made, const std::string& message);
   void refresh(const BrickSet& touched);
   void tell_slots();
@@ -43,6 +47,7 @@ class SemanticNode {
   NodeContext context_;
   Replies replies_;
   SemanticStore store_;
+  LayersNode layers_;
   Labels labels_;
   BrickMap map_;
   LabelView view_;
@@ -55,6 +60,7 @@ class SemanticNode {
   bool has_new_slots_ = true;
   bool begun_ = false;
   AssetsNode assets_node_;
+  LabelFilesNode files_node_;
 };
 
 }  // namespace concord
