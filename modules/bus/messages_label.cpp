@@ -68,16 +68,6 @@ Result<std::string> empty_or_title(const std::string& name) {
   return wire::title_of(name);
 }
 
-template <class Lcm>
-Result<WorkFrame> frame_of(const Lcm& in) {
-  if (!in.frame_agent.empty() && !is_name(in.frame_agent))
-    return refuse(Code::kBadName, std::string("frame_agent must be empty (the map's frame), or ") + kNameRule);
-  if (!in.frame_id.empty() && (in.frame_agent.empty() || !is_name(in.frame_id))) {
-    return refuse(Code::kBadFrame, "frame_id must be empty, or a name that comes with frame_agent");
-  }
-  return WorkFrame{in.frame_agent, in.frame_id};
-}
-
 label_instance_t to_wire(const LabelInstance& instance) {
   label_instance_t out{};
   out.label = static_cast<std::int32_t>(instance.of.label);
@@ -129,8 +119,7 @@ Bytes encode(const LabelRequest& value) {
   out.to_instance = static_cast<std::int32_t>(value.to_instance);
   out.correction_id = value.correction_id;
   out.shape = wire::to_wire(value.shape);
-  out.frame_agent = value.frame.agent;
-  out.frame_id = value.frame.frame_id;
+  wire::put_frame(value.frame, out);
   return wire::to_bytes(out);
 }
 
@@ -153,7 +142,7 @@ Decoded<LabelRequest> decode<LabelRequest>(std::span<const std::uint8_t> bytes) 
   if (in->op == label_request_t::LABEL || in->op == label_request_t::RESTORE) {
     out.take(&LabelRequest::shape, wire::shape_from_wire(in->shape));
   }
-  out.take(&LabelRequest::frame, frame_of(*in));
+  out.take(&LabelRequest::frame, wire::frame_of(*in));
   return out.done();
 }
 

@@ -14,7 +14,7 @@ namespace concord {
 namespace {
 
 struct Options {
-  std::string op, asset, transform = "0 0 0 0 0 0 1", author, id;
+  std::string op, subject, transform = "0 0 0 0 0 0 1", author, id;
 };
 
 Outcome list(const Common& common) {
@@ -33,14 +33,29 @@ Outcome list(const Common& common) {
   return Exit::kDone;
 }
 
-Outcome inject(const Options& options, const Common& common) {
-  if (!is_name(options.asset)) return bad_name(options.asset);
+tl::expected<AssetRequest, Failure> request_of(const Options& options) {
+  AssetRequest request;
+  request.author = author_or_user(options.author);
+  if (options.op == "inject") {
+    if (!is_name(options.subject)) return bad_name(options.subject);
+    request.asset = options.subject;
+  } else {
+    request.op = options.op == "move" ? AssetRequest::Op::kMove : AssetRequest::Op::kDelete;
+    request.of = options.subject;
+  }
   const auto T = parse_transform(options.transform);
   if (!T) return fail(T.error());
+  request.T_map_asset = *T;
+  return request;
+}
+
+Outcome ask(const Options& options, const Common& common) {
+  auto request = request_of(options);
+  if (!request) return tl::unexpected(request.error());
   Live live(common);
-  const AssetRequest request{live.id_or_new(options.id), author_or_user(options.author), options.asset, *T,
-                             live.bus().now()};
-  return print_revision(live.ask("in/asset", request), common);
+  request->id = live.id_or_new(options.id);
+  request->utime = live.bus().now();
+  return print_revision(live.ask("in/asset", *request), common);
 }
 
 }  // namespace
@@ -49,11 +64,11 @@ void add_assets(Program& program) {
   auto options = std::make_shared<Options>();
   CLI::App& command = program.add(
       "asset", "models that the server keeps, put into the map",
-      [options](const Common& common) { return options->op == "list" ? list(common) : inject(*options, common); });
-  command.add_option("op", options->op, "list, or inject: occupied and labelled, until its edit is undone")
+      [options](const Common& common) { return options->op == "list" ? list(common) : ask(*options, common); });
+  command.add_option("op", options->op, "list; inject: occupied and labelled; move and delete what was injected")
       ->required()
-      ->check(CLI::IsMember({"list", "inject"}));
-  command.add_option("asset", options->asset, "its name, with inject");
+      ->check(CLI::IsMember({"list", "inject", "move", "delete"}));
+  command.add_option("subject", options->subject, "inject: name of the asset; move, delete: id of its injection");
   command.add_option("--transform", options->transform, "T_map_asset as \"x y z qx qy qz qw\", of the file's own axes");
   command.add_option("--author", options->author, "who asks; without it $USER");
   command.add_option("--id", options->id,

@@ -98,8 +98,6 @@ void add_downsample(Program& program);
 void add_publish(Program& program);
 /// map, digest.
 void add_map(Program& program);
-void add_voxelize(Program& program);
-void add_segment(Program& program);
 void add_up(Program& program);
 void add_demo(Program& program);
 

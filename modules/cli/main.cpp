@@ -34,6 +34,8 @@ int main(int argc, char** argv) {
   concord::add_label(program);
   concord::add_labels(program);
   concord::add_assets(program);
+  concord::add_things(program);
+  concord::add_detect(program);
   concord::add_up(program);
   concord::add_demo(program);
   concord::add_replay(program);

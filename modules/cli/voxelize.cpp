@@ -3,9 +3,9 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/arguments.hpp"
-#include "cli/command.hpp"
 #include "cli/map_file.hpp"
 #include "cli/numbers.hpp"
+#include "cli/semantic_commands.hpp"
 #include "cli/voxel_box.hpp"
 #include "core/octomap_format.hpp"
 #include "semantic/model_file.hpp"

@@ -37,6 +37,13 @@ struct LabelAnchor {
   Transform T_map_agent = Transform::Identity();
 };
 
+/// A model as it was put into the map.
+struct Injection {
+  std::string asset;
+  Transform T_map_asset = Transform::Identity();
+  std::string replaces;  ///< the edit that had put it elsewhere before, and is undone while this one holds; else empty
+};
+
 struct LabelCorrection {
   /// Claims voxels of the map's lattice, as they lay then. The later claim has a voxel.
   struct Claim {
@@ -45,6 +52,7 @@ struct LabelCorrection {
     std::vector<VoxelIndex> voxels;  ///< sorted and unique
     std::string edit_id = {};  ///< the edit it came with (an injected asset): it holds while that edit does; else empty
     LabelAnchor anchor = {};
+    Injection injection = {};  ///< what that edit put there; not heeded without one
   };
   struct Rename {
     ClassId label = 0;

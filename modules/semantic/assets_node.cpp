@@ -5,6 +5,7 @@
 #include "bus/recent_answers.hpp"
 #include "core/voxel_boxes.hpp"
 #include "semantic/asset_folder.hpp"
+#include "semantic/injections.hpp"
 #include "semantic/model_file.hpp"
 #include "semantic/solid_voxels.hpp"
 
@@ -58,43 +59,83 @@ void AssetsNode::list() {
   list_.set(all);
 }
 
-void AssetsNode::on_request(const AssetRequest& request) {
+void AssetsNode::on_request(const AssetRequest& request, const std::string& remark) {
+  if (request.op == AssetRequest::Op::kDelete) return take_out(request);
   const std::uint64_t content = content_without_time(request);
-  if (const Labels::Made* before = parts_.labels.find(request.id)) {
-    if (before->content != content) {
-      return replies_.deny(kRequests, request.id, {Code::kExists, "another request had this id; ids must be unique"});
-    }
-    if (!parts_.labels.knows_edit(edit_of_asset(request.id))) {
-      asked_.insert(request.id);
-      return send_waiting();
-    }
-    return replies_.grant(request.id, before->revision, before->count, "put in since it was asked before");
+  if (const Labels::Made* before = parts_.labels.find(request.id); before != nullptr && before->content != content) {
+    return replies_.deny(kRequests, request.id, {Code::kExists, "another request had this id; ids must be unique"});
   }
+  if (ask_again(request)) return;
   auto claim = claim_of(request);
   if (!claim) return replies_.deny(kRequests, request.id, claim.error());
   if (const auto done = parts_.commit(request.id, request.author, content, std::move(*claim)); !done) {
     return replies_.deny(kRequests, request.id, done.error());
   }
-  asked_.insert(request.id);
+  asked_[request.id] = remark;
   send_waiting();
 }
 
+bool AssetsNode::ask_again(const AssetRequest& request) {
+  if (parts_.labels.find(request.id) == nullptr) return false;
+  const auto all = parts_.labels.injected();
+  if (std::ranges::find(all, request.id, &Labels::Injected::request_id) == all.end()) {
+    replies_.deny(kRequests, request.id, {Code::kConflict, "it was refused before; ask with another id"});
+    return true;
+  }
+  asked_.try_emplace(request.id);
+  send_waiting();
+  answer_askers();
+  return true;
+}
+
+/// Merge answers to our undo, and we to who asked.
+void AssetsNode::take_out(const AssetRequest& request) {
+  const auto before = removed_.find(request.id);
+  const auto there = where_is(request.of, parts_.labels);
+  if (before == removed_.end() && !there) {
+    return replies_.deny(kRequests, request.id,
+                         {Code::kNotFound, "nothing that " + request.of + " injected is in the map"});
+  }
+  UndoRequest undo = removal(before != removed_.end() ? before->second : there->edit_id, request.id, request.author);
+  undo.utime = request.utime;
+  context_.bus.publish("in/undo", encode(undo));
+}
+
 Result<LabelCorrection::Claim> AssetsNode::claim_of(const AssetRequest& request) const {
+  LabelRequest label;
+  if (request.op == AssetRequest::Op::kMove) {
+    const auto there = where_is(request.of, parts_.labels);
+    if (!there) return refuse(Code::kNotFound, "nothing that " + request.of + " injected is in the map");
+    label.name = parts_.labels.classes().at(there->of.label).name;
+    label.of.instance = there->of.instance;
+    return claim_of(std::move(label), {there->what.asset, request.T_map_asset, there->edit_id}).map([&](auto claim) {
+      claim.edit_id = edit_of_asset(request.id);
+      return claim;
+    });
+  }
   const auto it = assets_.find(request.asset);
   if (it == assets_.end()) return refuse(Code::kNotFound, "no asset " + request.asset + "; see: concord asset list");
+  label.name = it->second.class_name;
+  return claim_of(std::move(label), {request.asset, request.T_map_asset, ""}).map([&](auto claim) {
+    claim.edit_id = edit_of_asset(request.id);
+    return claim;
+  });
+}
+
+Result<LabelCorrection::Claim> AssetsNode::claim_of(LabelRequest label, Injection injection) const {
+  const auto it = assets_.find(injection.asset);
+  if (it == assets_.end()) return refuse(Code::kNotFound, "no asset " + injection.asset + "; see: concord asset list");
   const Asset& asset = it->second;
   const auto mesh = read_model_file(context_.site.state / "assets" / asset.file);
   if (!mesh) return tl::unexpected(mesh.error());
-  const auto voxels = voxelize(*mesh, {request.T_map_asset, asset.unit}, context_.site.resolution, Fill::kSolid);
+  const auto voxels = voxelize(*mesh, {injection.T_map_asset, asset.unit}, context_.site.resolution, Fill::kSolid);
   if (!voxels) return tl::unexpected(voxels.error());
   BrickMasks all = voxels->surface;
   all.insert(voxels->interior);
-  LabelRequest label;
-  label.name = asset.class_name;
   auto what = parts_.labels.check(label, all.voxels());
   if (!what) return tl::unexpected(what.error());
   auto claim = std::get<LabelCorrection::Claim>(std::move(*what));
-  claim.edit_id = edit_of_asset(request.id);
+  claim.injection = std::move(injection);
   return claim;
 }
 
@@ -102,10 +143,26 @@ Result<LabelCorrection::Claim> AssetsNode::claim_of(const AssetRequest& request)
 void AssetsNode::on_answer(const Answer& answer) {
   if (answer.process != "merge") return;
   heard_revision_ = std::max(heard_revision_, answer.revision);
+  if (const std::string asked = asked_removal(answer.id); !asked.empty()) {
+    concord::answer(context_.bus,
+                    {asked, context_.process, answer.ok, answer.code, answer.message, answer.revision, answer.count});
+  }
   if (!answer.ok && answer.code != name(Code::kBusy)) {
     if (const auto ours = parts_.labels.waiting_for(answer.id)) take_back(*ours, answer);
+    if (const std::string moved = moved_by(answer.id); !moved.empty()) move_back(moved, answer);
   }
   ask_history();
+}
+
+/// The old place could not be left: who asked hears so, and the new one is. Nobody waits after a restart; then it is
+/// tried again until it can.
+void AssetsNode::move_back(const std::string& edit_id, const Answer& why) {
+  for (const Labels::Injected& one : parts_.labels.injected()) {
+    if (one.edit_id != edit_id || asked_.erase(one.request_id) == 0) continue;
+    answer(context_.bus, {one.request_id, context_.process, false, why.code, why.message, 0, 0});
+    const UndoRequest undo{edit_id + ".refused", one.author, edit_id, false, context_.bus.now()};
+    context_.bus.publish("in/undo", encode(undo));
+  }
 }
 
 /// An injection that merge refused is one that nobody made, but its numbers are spent.
@@ -139,33 +196,41 @@ void AssetsNode::on_history(const HistoryPart& part) {
   for (const auto& [number, one] : parts) {
     for (const Operation& operation : one.operations) {
       known_revision_ = std::max(known_revision_, operation.revision);
+      if (const std::string asked = asked_removal(operation.id); !asked.empty()) removed_[asked] = operation.subject;
       const bool takes_back = operation.kind == Operation::Kind::kUndo,
                  brings_back = operation.kind == Operation::Kind::kRedo;
       const std::string& edit = takes_back || brings_back ? operation.subject : operation.id;
       if (parts_.labels.is_edit_of_claim(edit)) {
-        parts_.labels.set_edit(edit, takes_back ? false : brings_back || operation.active, touched);
+        parts_.labels.set_edit(edit, {!takes_back, operation.revision, is_ours(operation.id)}, touched);
       }
     }
   }
   parts_.refresh(touched);
+  send_waiting();
   answer_askers();
   ask_history();  // there may be more
 }
 
 void AssetsNode::answer_askers() {
-  std::erase_if(asked_, [this](const std::string& id) {
-    if (!parts_.labels.knows_edit(edit_of_asset(id))) return false;
-    const Labels::Made& made = *parts_.labels.find(id);
-    const std::string& class_name = parts_.labels.classes().at(made.of.label).name;
-    replies_.grant(id, made.revision, made.count,
-                   class_name + " " + std::to_string(made.of.instance) + " is put in; edit " + edit_of_asset(id));
-    return true;
-  });
+  if (asked_.empty() || !is_up_to_date()) return;
+  for (const Labels::Injected& one : parts_.labels.injected()) {
+    const auto asker = asked_.find(one.request_id);
+    if (asker == asked_.end() || !one.edit || !has_moved(one, parts_.labels)) continue;
+    const std::string& class_name = parts_.labels.classes().at(one.of.label).name;
+    replies_.grant(
+        one.request_id, parts_.labels.find(one.request_id)->revision, one.count,
+        class_name + " " + std::to_string(one.of.instance) + " is put in" + asker->second + "; edit " + one.edit_id);
+    asked_.erase(asker);
+  }
 }
 
 /// Not before all that merge has is known: what it took long ago must not be asked again and again.
 void AssetsNode::send_waiting() {
-  if (heard_revision_ < 0 || known_revision_ < heard_revision_) return;
+  if (!is_up_to_date()) return;
+  for (UndoRequest& undo : due(parts_.labels)) {
+    undo.utime = context_.bus.now();
+    context_.bus.publish("in/undo", encode(undo));
+  }
   for (const Labels::Waiting& waiting : parts_.labels.waiting(kSentAtOnce)) {
     EditRequest edit;
     edit.id = waiting.edit_id;

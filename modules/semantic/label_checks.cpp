@@ -172,8 +172,9 @@ struct Labels::Follow {
     if (!claim.class_name.empty()) {
       if (const auto fine = labels.check_new_name(claim.class_name); !fine) return fine;
     }
-    if (!claim.edit_id.empty() && !is_kept_id(claim.edit_id))
-      return refuse(Code::kBadName, "it has an edit that is none");
+    if (!claim.edit_id.empty()) {
+      if (const auto fine = check(claim); !fine) return fine;
+    }
     if (const auto fine = check(claim.anchor); !fine) return fine;
     return labels.check_room(claim.of);
   }
@@ -206,10 +207,22 @@ struct Labels::Follow {
   static Result<void> check(const LabelAnchor& anchor) {
     if (anchor.agent.empty()) return {};
     if (!is_name(anchor.agent) || !is_name(anchor.frame_id)) return refuse(Code::kBadName, "it lies on no agent");
-    const bool lies = is_rotation(anchor.T_map_agent.linear()) && anchor.T_map_agent.translation().allFinite() &&
-                      anchor.T_map_agent.translation().cwiseAbs().maxCoeff() <= kFarthestPlacement;
-    if (!lies) return refuse(Code::kBadTransform, "its agent lies nowhere");
+    if (!is_placement(anchor.T_map_agent)) return refuse(Code::kBadTransform, "its agent lies nowhere");
     return {};
+  }
+  static Result<void> check(const Claim& claim) {
+    const Injection& injection = claim.injection;
+    if (!is_kept_id(claim.edit_id) || !is_name(injection.asset))
+      return refuse(Code::kBadName, "its asset or edit is none");
+    if (!injection.replaces.empty() && !is_kept_id(injection.replaces)) {
+      return refuse(Code::kBadName, "it replaces an edit that is none");
+    }
+    if (!is_placement(injection.T_map_asset)) return refuse(Code::kBadTransform, "its asset lies nowhere");
+    return {};
+  }
+  static bool is_placement(const Transform& T) {
+    return is_rotation(T.linear()) && T.translation().allFinite() &&
+           T.translation().cwiseAbs().maxCoeff() <= kFarthestPlacement;
   }
 };
 

@@ -25,6 +25,12 @@ void append(Bytes& out, const LabelAnchor& anchor) {
   archive::append_transform(out, anchor.T_map_agent);
 }
 
+void append(Bytes& out, const Injection& injection) {
+  append_text(out, injection.asset);
+  archive::append_transform(out, injection.T_map_asset);
+  append_text(out, injection.replaces);
+}
+
 struct AppendWhat {
   Bytes& out;
 
@@ -33,6 +39,7 @@ struct AppendWhat {
     append(out, claim.of);
     append_text(out, claim.class_name);
     append_text(out, claim.edit_id);
+    if (!claim.edit_id.empty()) append(out, claim.injection);
     append(out, claim.anchor);
     archive::append_voxels(out, claim.voxels);
   }
@@ -74,11 +81,20 @@ LabelAnchor read_anchor(FieldReader& in) {
   return anchor;
 }
 
+Injection read_injection(FieldReader& in) {
+  Injection injection;
+  injection.asset = in.text();
+  injection.T_map_asset = archive::read_transform(in);
+  injection.replaces = in.text();
+  return injection;
+}
+
 Result<Labels::What> read_claim(FieldReader& in, std::int64_t most) {
   LabelCorrection::Claim claim;
   claim.of = read_instance(in);
   claim.class_name = in.text();
   claim.edit_id = in.text();
+  if (!claim.edit_id.empty()) claim.injection = read_injection(in);
   claim.anchor = read_anchor(in);
   auto voxels = archive::read_voxels(in, static_cast<std::uint64_t>(most));
   if (!voxels) return tl::unexpected(voxels.error());
@@ -126,18 +142,16 @@ void append_label_correction(Bytes& out, const LabelCorrection& correction) {
 
 Result<LabelCorrection> read_label_correction(ByteSpan& bytes, std::int64_t most) {
   FieldReader in(bytes);
-  LabelCorrection correction;
-  correction.revision = in.integer<std::int64_t>();
-  correction.id = in.text();
-  correction.author = in.text();
-  correction.utime = in.integer<std::int64_t>();
-  correction.content = in.integer<std::uint64_t>();
+  const auto revision = in.integer<std::int64_t>();
+  std::string id = in.text();
+  std::string author = in.text();
+  const auto utime = in.integer<std::int64_t>();
+  const auto content = in.integer<std::uint64_t>();
   auto what = read_what(in, most);
   if (!what) return tl::unexpected(what.error());
   if (!in.ok()) return refuse(Code::kMalformed, "a label correction is cut short or none");
-  correction.what = std::move(*what);
   bytes = in.rest();
-  return correction;
+  return LabelCorrection{revision, std::move(id), std::move(author), utime, content, std::move(*what)};
 }
 
 Result<std::vector<LabelCorrection>> read_label_section(ByteSpan section) {

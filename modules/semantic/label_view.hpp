@@ -27,6 +27,8 @@ class LabelView {
 
   /// Its voxels, sorted. @param of instance 0: of all of its class.
   [[nodiscard]] std::vector<VoxelIndex> voxels_of(InstanceId of) const;
+  /// What shows of each instance; of all (0), or of one class's.
+  [[nodiscard]] std::map<InstanceId, std::vector<VoxelIndex>> by_instance(ClassId label) const;
   /// How it shows; without a voxel if it does not.
   [[nodiscard]] LabelInstance instance(InstanceId of) const;
 
@@ -36,8 +38,6 @@ class LabelView {
  private:
   [[nodiscard]] LabelInstance summary(InstanceId of, const std::vector<VoxelIndex>& voxels) const;
   [[nodiscard]] std::vector<LabelInstance> within(const LabelQuery& query) const;
-  /// By instance; all, or one class's.
-  [[nodiscard]] std::map<InstanceId, std::vector<VoxelIndex>> by_instance(ClassId label) const;
   [[nodiscard]] std::vector<VoxelIndex> border_of(const std::vector<VoxelIndex>& voxels) const;
 
   const Labels& labels_;

@@ -25,7 +25,7 @@ struct Labels::Apply {
   void operator()(const Claim& claim) const {
     Step& kept = labels.steps_[step];
     kept.is_claim = true;
-    kept.claim = {claim.of, claim.class_name, {}, claim.edit_id, claim.anchor};
+    kept.claim = {claim.of, claim.class_name, {}, claim.edit_id, claim.anchor, claim.injection};
     kept.bricks = masks_of(claim.voxels).sorted();
     if (!claim.class_name.empty()) labels.classes_[claim.of.label].name = claim.class_name;
     labels.give(claim.of);
@@ -84,15 +84,29 @@ void Labels::apply(const LabelCorrection& correction, BrickSet& touched) {
   std::visit(Apply{*this, step, made_.back(), touched}, correction.what);
 }
 
-void Labels::set_edit(const std::string& edit_id, bool active, BrickSet& touched) {
-  const auto [it, is_new] = edits_.try_emplace(edit_id, active);
-  if (!is_new && it->second == active) return;
-  it->second = active;
+void Labels::set_edit(const std::string& edit_id, const EditState& state, BrickSet& touched) {
+  const auto [it, is_new] = edits_.try_emplace(edit_id, state);
+  const bool was_active = !is_new && it->second.active;
+  it->second = state;
+  if (was_active == state.active) return;
   const auto steps = by_edit_.find(edit_id);
   if (steps == by_edit_.end()) return;
   for (const std::uint32_t step : steps->second) {
     for (const auto& [index, mask] : steps_[step].bricks) touched.insert(index);
   }
+}
+
+std::vector<Labels::Injected> Labels::injected() const {
+  std::vector<Injected> out;
+  for (const auto& [edit_id, steps] : by_edit_) {
+    const Step& step = steps_[steps.front()];
+    if (!step.active) continue;
+    const Made& made = made_[steps.front()];
+    const auto edit = edits_.find(edit_id);
+    out.push_back({made.id, edit_id, made.author, step.claim.of, step.claim.injection,
+                   edit != edits_.end() ? std::optional(edit->second) : std::nullopt, made.count});
+  }
+  return out;
 }
 
 bool Labels::is_news(const LabelAnchor& where) const {
@@ -198,7 +212,7 @@ std::optional<InstanceId> Labels::holder_of(std::uint32_t claim) const {
   const std::string& edit_id = steps_[claim].claim.edit_id;
   if (!edit_id.empty()) {
     const auto edit = edits_.find(edit_id);
-    if (edit == edits_.end() || !edit->second) return std::nullopt;
+    if (edit == edits_.end() || !edit->second.active) return std::nullopt;
   }
   return owner_of(claim);
 }

@@ -42,12 +42,29 @@ class Labels {
   /// before.
   void apply(const LabelCorrection& correction, BrickSet& touched);
 
-  /// Whether an edit holds that claims came with (merge's word). What nothing was said of does not hold.
-  void set_edit(const std::string& edit_id, bool active, BrickSet& touched);
+  /// How an edit is that claims came with.
+  struct EditState {
+    bool active = false;
+    std::int64_t revision = 0;  ///< merge's, that made it so
+    bool by_us = false;         ///< semantic asked for that
+  };
+  /// Merge's word. What nothing was said of does not hold.
+  void set_edit(const std::string& edit_id, const EditState& state, BrickSet& touched);
 
   /// Whether some claim came with this edit; whether merge has said if it holds.
   [[nodiscard]] bool is_edit_of_claim(const std::string& edit_id) const { return by_edit_.contains(edit_id); }
   [[nodiscard]] bool knows_edit(const std::string& edit_id) const { return edits_.contains(edit_id); }
+
+  /// A model that was put into the map.
+  struct Injected {
+    std::string request_id, edit_id, author;
+    InstanceId of;
+    Injection what;
+    std::optional<EditState> edit;  ///< none: merge has said nothing of it
+    std::int64_t count = 0;         ///< voxels
+  };
+  /// By the ids of the edits; those that merge refused are none.
+  [[nodiscard]] std::vector<Injected> injected() const;
 
   /// An agent's frame lies there now: the labels on it go along, be they claimed before or after. What nothing was said
   /// of lies where it was claimed. Costs what its labels have voxels.
@@ -140,7 +157,7 @@ class Labels {
   std::map<InstanceId, std::vector<std::uint32_t>> claims_;   ///< steps, ascending; by whom they were made for
   std::map<InstanceId, std::vector<std::uint32_t>> changes_;  ///< TakeOff and Reassign, by what they concern
   std::map<std::string, std::vector<std::uint32_t>> by_edit_;
-  std::map<std::string, bool> edits_;
+  std::map<std::string, EditState> edits_;
   struct Frame {
     std::vector<std::uint32_t> claims;     ///< on it
     std::optional<Transform> T_map_agent;  ///< as was last said

@@ -65,6 +65,8 @@ SemanticNode::SemanticNode(const NodeContext& context)
                              [this](const std::string& id, const std::string& author, std::uint64_t content,
                                     Labels::What what) { return commit(id, author, content, std::move(what)); },
                              [this](const BrickSet& touched) { refresh(touched); }}),
+      detections_node_(context,
+                       {labels_, map_, assets_node_, [this](const WorkFrame& frame) { return T_map_frame(frame); }}),
       files_node_(context, {labels_, [this](const auto& visit) { return store_.for_each(visit); },
                             [this](const std::vector<LabelCorrection>& all) { return commit(all); }}) {
   restore();
@@ -265,7 +267,8 @@ void SemanticNode::refresh(const BrickSet& touched) {
   for (const auto& [tile, bricks] : touched.sorted()) {
     for (std::uint64_t bits = bricks; bits != 0; bits &= bits - 1) {
       const BrickIndex index = brick_at(tile, std::countr_zero(bits));
-      if (view_.refresh(index) && begun_) label_stream_.touch(index);
+      if (!view_.refresh(index)) continue;
+      if (begun_) label_stream_.touch(index);
     }
   }
   has_new_slots_ = has_new_slots_ || view_.slot_count() != slots;

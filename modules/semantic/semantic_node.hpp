@@ -11,6 +11,7 @@
 #include "bus/replies.hpp"
 #include "bus/reply_queue.hpp"
 #include "semantic/assets_node.hpp"
+#include "semantic/detections_node.hpp"
 #include "semantic/label_files_node.hpp"
 #include "semantic/label_view.hpp"
 #include "semantic/labels.hpp"
@@ -60,6 +61,7 @@ class SemanticNode {
   bool has_new_slots_ = true;
   bool begun_ = false;
   AssetsNode assets_node_;
+  DetectionsNode detections_node_;
   LabelFilesNode files_node_;
 };
 

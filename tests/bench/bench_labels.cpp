@@ -103,7 +103,7 @@ class World {
   int asked_ = 0;
   InstanceId last_;
   BrickMap map_;
-  Labels labels_;
+  Labels labels_{0.05};
   LabelView view_{labels_, map_, 0.05};
 };
 

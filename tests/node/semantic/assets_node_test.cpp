@@ -24,7 +24,27 @@ class AssetsNodeTest : public SemanticStation {
   Answer inject(const std::string& id, const std::string& asset, double x) {
     Transform T = Transform::Identity();
     T.translation().x() = x;
-    return ask("in/asset", encode(AssetRequest{id, "eva", asset, T, 5}));
+    return ask("in/asset", encode(AssetRequest{id, "eva", AssetRequest::Op::kInject, asset, "", T, 5}));
+  }
+  Answer move(const std::string& id, const std::string& of, double x) {
+    Transform T = Transform::Identity();
+    T.translation().x() = x;
+    return ask("in/asset", encode(AssetRequest{id, "eva", AssetRequest::Op::kMove, "", of, T, 5}));
+  }
+  Answer take_out(const std::string& id, const std::string& of) {
+    return ask("in/asset",
+               encode(AssetRequest{id, "eva", AssetRequest::Op::kDelete, "", of, Transform::Identity(), 5}));
+  }
+  Answer undo_edit(const std::string& id, const std::string& edit, bool redo = false) {
+    const Answer answer = ask("in/undo", encode(UndoRequest{id, "eva", edit, redo, bus_->now()}));
+    run();
+    return answer;
+  }
+  /// What is where a cube at 2 m has its middle, and at 5 m, and at 8 m.
+  [[nodiscard]] std::string places() const {
+    std::string out;
+    for (const std::int32_t x : {25, 55, 85}) out += (is_there(x) ? seen_at(x) : "-") + "|";
+    return out;
   }
   [[nodiscard]] bool is_there(std::int32_t x) const { return is_occupied(merge_->map().at({x, 5, 5})); }
   [[nodiscard]] std::string seen_at(std::int32_t x) const {
@@ -64,11 +84,83 @@ TEST_F(AssetsNodeTest, UndoingItsEditUndoesItWholeAndRedoBringsItBack) {
   EXPECT_EQ(seen_at(25), "box 1");
 }
 
+TEST_F(AssetsNodeTest, AModelIsMovedAsOneThingAndKeepsItsName) {
+  ASSERT_TRUE(inject("a1", "cube", 2.0).ok);
+  const Answer answer = move("m1", "a1", 5.0);
+  ASSERT_TRUE(answer.ok) << answer.message;
+  run();
+  EXPECT_EQ(places(), "-|box 1|-|");
+  ASSERT_TRUE(move("m2", "a1", 8.0).ok);
+  move("m1", "a1", 5.0);  // an old copy does nothing
+  run();
+  EXPECT_EQ(places(), "-|-|box 1|");
+  start();
+  EXPECT_EQ(places(), "-|-|box 1|");
+  ASSERT_TRUE(undo_edit("u1", "asset-m2").ok);
+  EXPECT_EQ(places(), "-|box 1|-|");
+  ASSERT_TRUE(undo_edit("u2", "asset-m1").ok);
+  EXPECT_EQ(places(), "box 1|-|-|");
+  ASSERT_TRUE(undo_edit("u3", "asset-m1", true).ok);
+  EXPECT_EQ(places(), "-|box 1|-|");
+  start();
+  EXPECT_EQ(places(), "-|box 1|-|");
+}
+
+TEST_F(AssetsNodeTest, AMovedModelIsTakenOutForGoodWhereverItIs) {
+  ASSERT_TRUE(inject("a1", "cube", 2.0).ok);
+  ASSERT_TRUE(move("m1", "a1", 5.0).ok);
+  const Answer gone = take_out("d1", "a1");
+  ASSERT_TRUE(gone.ok) << gone.message;
+  run();
+  EXPECT_EQ(places(), "-|-|-|");
+  EXPECT_TRUE(take_out("d1", "a1").ok);  // its answer was lost
+  start();
+  EXPECT_TRUE(take_out("d1", "a1").ok);
+  EXPECT_EQ(places(), "-|-|-|");
+  EXPECT_EQ(take_out("d2", "a1").code, "NOT_FOUND");
+  EXPECT_EQ(move("m2", "a1", 8.0).code, "NOT_FOUND");
+  ASSERT_TRUE(undo_edit("u1", "asset-m1", true).ok);
+  EXPECT_EQ(places(), "-|box 1|-|");
+}
+
+TEST_F(AssetsNodeTest, AMoveThatMayNotLeaveItsOldPlaceIsUndone) {
+  ASSERT_TRUE(inject("a1", "cube", 2.0).ok);
+  LeaseRequest lease;
+  lease.id = "lease";
+  lease.author = "bob";
+  lease.lease = "corner";
+  lease.volume = Box{{2, 0, 0}, {3, 1, 1}};
+  lease.utime = bus_->now();
+  ASSERT_TRUE(ask("in/lease", encode(lease)).ok);
+  EXPECT_EQ(move("m1", "a1", 5.0).code, "LOCKED");
+  run();
+  EXPECT_EQ(places(), "box 1|-|-|");
+}
+
+TEST_F(AssetsNodeTest, AKillBetweenTheTwoHalvesOfAMoveLosesNothing) {
+  ASSERT_TRUE(inject("a1", "cube", 2.0).ok);
+  stop();
+  {
+    SemanticStore store(site_.state / "semantic.db", site_.resolution);
+    Transform T = Transform::Identity();
+    T.translation().x() = 5.0;
+    ASSERT_TRUE(store.put({2, "m1", "eva", 5, 7,
+                           LabelCorrection::Claim{{1, 1}, "", {{55, 5, 5}}, "asset-m1", {}, {"cube", T, "asset-a1"}}}));
+  }
+  start();
+  run();
+  EXPECT_EQ(places(), "-|box 1|-|");
+  start();
+  EXPECT_EQ(places(), "-|box 1|-|");
+}
+
 TEST_F(AssetsNodeTest, AKillBetweenTheIntentAndTheEditLosesNothing) {
   stop();
   {
     SemanticStore store(site_.state / "semantic.db", site_.resolution);
-    ASSERT_TRUE(store.put({1, "a1", "eva", 5, 7, LabelCorrection::Claim{{1, 1}, "box", {{25, 5, 5}}, "asset-a1"}}));
+    ASSERT_TRUE(store.put(
+        {1, "a1", "eva", 5, 7,
+         LabelCorrection::Claim{{1, 1}, "box", {{25, 5, 5}}, "asset-a1", {}, {"cube", Transform::Identity(), ""}}}));
   }
   start();
   run();
@@ -81,6 +173,7 @@ TEST_F(AssetsNodeTest, WhatMergeRefusesIsNotThere) {
   LeaseRequest lease;
   lease.id = "lease";
   lease.author = "bob";
+  lease.lease = "corner";
   lease.volume = Box{{2, 0, 0}, {3, 1, 1}};
   lease.utime = bus_->now();
   ASSERT_TRUE(ask("in/lease", encode(lease)).ok);

@@ -112,6 +112,80 @@ TEST_F(SemanticNodeTest, TellsWhatIsWhere) {
   EXPECT_EQ(ask("in/label_query", encode(query, bus_->now())).code, "NOT_FOUND");
 }
 
+TEST_F(SemanticNodeTest, ALabelGoesAlongWithTheAgentThatItLiesOnAndBackAfterRestartsToo) {
+  ASSERT_TRUE(label("l1", "chair", 0, 3).ok);
+  const auto aligned_at = [this](const std::string& id, double x) {
+    Transform T = Transform::Identity();
+    T.translation().x() = x;
+    ASSERT_TRUE(ask("in/transform", encode(TransformRequest{id, "eva", "robot1", "", T}, bus_->now())).ok);
+    run();
+  };
+  aligned_at("t2", 1.0);
+  EXPECT_EQ(seen(0), "");
+  EXPECT_EQ(seen(10), "chair 1");
+  EXPECT_EQ(seen(13), "chair 1");
+  EXPECT_EQ(seen(14), "");
+  ASSERT_TRUE(label("l2", "table", 14, 15).ok);
+  start();
+  EXPECT_EQ(seen(10), "chair 1");
+  EXPECT_EQ(seen(14), "table 1");
+  ASSERT_TRUE(ask("in/undo", encode(UndoRequest{"u1", "eva", "t2", false, bus_->now()})).ok);
+  run();
+  EXPECT_EQ(seen(0), "chair 1");
+  EXPECT_EQ(seen(4), "table 1");
+  EXPECT_EQ(seen(10), "");
+}
+
+TEST_F(SemanticNodeTest, ALabelOnWhatPeoplePinnedStaysInTheMap) {
+  EditRequest edit;
+  edit.id = "e1";
+  edit.author = "eva";
+  edit.shape = VoxelList{site_.resolution, {{{30, 0, 0}, {33, 0, 0}}}};
+  ASSERT_TRUE(ask("in/edit", encode(edit)).ok);
+  run();
+  ASSERT_TRUE(label("l1", "wall", 30, 33).ok);
+  Transform T = Transform::Identity();
+  T.translation().x() = 1.0;
+  ASSERT_TRUE(ask("in/transform", encode(TransformRequest{"t2", "eva", "robot1", "", T}, bus_->now())).ok);
+  run();
+  EXPECT_EQ(seen(30), "wall 1");
+}
+
+TEST_F(SemanticNodeTest, ASavedMapHasTheLabelsAndALoadedOneGivesThemBack) {
+  ASSERT_TRUE(label("l1", "chair", 0, 3).ok);
+  ASSERT_TRUE(label("l2", "table", 2, 7).ok);
+  ASSERT_TRUE(undo("u1", "l1").ok);
+  const MapRequest save{"s1", MapRequest::Op::kSave, "hall", "concord", false, ""};
+  Answer saved = ask("in/map_request", encode(save, bus_->now()));
+  if (saved.code == "BUSY") saved = ask("in/map_request", encode(save, bus_->now()));
+  ASSERT_TRUE(saved.ok) << saved.message;
+  EXPECT_EQ(saved.process, "merge");
+  EXPECT_EQ(saved.message, "saved hall.concord");
+  EXPECT_TRUE(std::filesystem::is_empty(site_.state / "handover"));
+
+  stop();
+  for (const char* part : {"", "-wal", "-shm"})
+    std::filesystem::remove(site_.state / (std::string("semantic.db") + part));
+  start();
+  EXPECT_EQ(seen(4), "");
+  const MapRequest load{"o1", MapRequest::Op::kLoad, "hall", "concord", false, ""};
+  ask("in/map_request", encode(load, bus_->now()));
+  EXPECT_TRUE(
+      std::ranges::any_of(answers_, [](const Answer& a) { return a.process == "semantic" && a.code == "BUSY"; }));
+  run();
+  EXPECT_EQ(seen(4), "");  // not before merge has taken it
+  ask("out/answer", encode(Answer{"o1", "merge", true, "OK", "", 9, 3}, bus_->now()));
+  ASSERT_TRUE(
+      std::ranges::any_of(answers_, [](const Answer& a) { return a.process == "semantic" && a.ok && a.count == 3; }));
+  run();
+  EXPECT_EQ(seen(0), "");
+  EXPECT_EQ(seen(4), "table 1");
+  ASSERT_TRUE(undo("u2", "l1", true).ok);  // what was undone there can be redone here
+  run();
+  EXPECT_EQ(seen(0), "chair 1");
+  EXPECT_EQ(seen(2), "table 1");
+}
+
 TEST_F(SemanticNodeTest, LabelsStayWhereVoxelsComeBack) {
   ASSERT_TRUE(label("l1", "chair", 0, 3).ok);
   agent_map_.set({0, 0, 0}, Brick());

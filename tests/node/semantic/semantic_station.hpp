@@ -48,6 +48,7 @@ class SemanticStation : public ::testing::Test {
       bus_->publish("out/status/ingest", encode(ProcessStatus{bus_->now(), "ingest", 1, {}}));
       const std::map<std::string, std::int64_t> said{{"edit_revision", counters_.get("edit_revision")}};
       bus_->publish("out/status/merge", encode(ProcessStatus{bus_->now(), "merge", 1, said}));
+      bus_->publish("out/status/semantic", encode(ProcessStatus{bus_->now(), "semantic", 1, {}}));
     });
     merge_ = std::make_unique<MergeNode>(NodeContext{*bus_, counters_, site_, "merge", time});
     semantic_ = std::make_unique<SemanticNode>(NodeContext{*bus_, counters_, site_, "semantic", time});

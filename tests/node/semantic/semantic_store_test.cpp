@@ -96,7 +96,7 @@ TEST_F(SemanticStoreTest, RefusesAnotherResolutionAndSaysWhatIsDamaged) {
   EXPECT_THROW(SemanticStore(file_, 0.1), ConfigError);
   sqlite3* raw = nullptr;
   ASSERT_EQ(sqlite3_open(file_.c_str(), &raw), SQLITE_OK);
-  ASSERT_EQ(sqlite3_exec(raw, "UPDATE corrections SET voxels = x'0102'", nullptr, nullptr, nullptr), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(raw, "UPDATE corrections SET correction = x'0102'", nullptr, nullptr, nullptr), SQLITE_OK);
   sqlite3_close(raw);
   SemanticStore store(file_, 0.05);
   EXPECT_EQ(store.for_each([](const LabelCorrection&) -> Result<void> { return {}; }).error().code, Code::kIo);

@@ -52,7 +52,7 @@ class World {
   }
   [[nodiscard]] std::string last() const { return "r" + std::to_string(asked_); }
 
-  Labels labels;
+  Labels labels{0.1};
   std::vector<LabelCorrection> corrections;
   BrickSet touched;
 

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <vector>
+
+#include "core/brick_map.hpp"
+#include "core/transform.hpp"
+#include "semantic/object_fit.hpp"
+
+namespace concord {
+
+/// A place where a model seems to be.
+struct FoundModel {
+  Transform T_map_model = Transform::Identity();
+  double score =
+      0;  ///< 0 to 1: of its surface that the map speaks of, the share that is occupied; less if that is little
+  double matched = 0;  ///< see ObjectFit
+  double free = 0;     ///< share of its surface that lies amidst what was seen to be free
+};
+
+struct FindOptions {
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< of the model's own axes: it is sought upright
+  double min_score = 0.6;
+  int most = 20;
+};
+
+/// Finds a known model in the occupied surface of a map that is z up, wherever it stands and whichever way it is
+/// turned.
+///
+/// For kYaws directions each occupied voxel that is not floor, ceiling or wall (find_room_planes) votes for the places
+/// of the model of which it could be a part of (a Hough transform: kVoters points spread over the model's surface). The
+/// kCandidates places with the most votes are fitted (fit_object), judged, and of those that overlap the best is kept.
+/// By descending score, then place. Refused: as by surface_points; a map of over kMaxFindCells cells of a box
+/// (kTooLarge).
+[[nodiscard]] Result<std::vector<FoundModel>> find_model(const TriangleMesh& mesh, double scale, const BrickMap& map,
+                                                         double resolution, const FindOptions& options = {});
+
+inline constexpr int kYaws = 24;
+inline constexpr std::size_t kVoters = 150;
+inline constexpr std::size_t kCandidates = 120;
+inline constexpr std::int64_t kMaxFindCells = 150'000'000;
+inline constexpr double kEnoughSeen = 0.35;  ///< of the surface must be occupied for a full score
+
+}  // namespace concord
