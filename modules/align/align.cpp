@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "align/gates.hpp"
 #include "align/hypotheses.hpp"
 
 namespace concord {
@@ -28,7 +29,6 @@ void probe_slides(const AlignMap& target, const AlignMap& source, int threads, A
       Transform T = out.T_target_source;
       T.translation().head<2>() += step * axis;
       if (!is_as_good(at(T), good)) continue;
-      out.T_target_source_rival = T;
       out.loose.push_back(name_slide({axis.x(), axis.y(), 0.0}));
       break;
     }
@@ -79,7 +79,6 @@ void judge(const AlignMap& target, const AlignMap& source, const GicpResult& fin
   out.against_level = s.level().share_against();
   const double all = s.upright().all + s.level().all;
   out.free_space_violation = all > 0.0 ? (s.upright().contradicted + s.level().contradicted) / all : 0.0;
-  out.score = s.score();
   out.reason = check_gates(s, origin);
   if (out.reason == AlignReason::kDegenerate) out.loose.push_back(name_slide(Eigen::Vector3d::UnitZ()));
   if (!out.accepted()) return;
@@ -100,15 +99,40 @@ void find_rival(const AlignMap& target, const AlignMap& source, const std::vecto
     const GicpResult rival = refine_fully(target, source, h.T_target_source, threads);
     out.iterations += rival.iterations;
     if (!are_apart(rival.T_target_source, out.T_target_source, p_source)) continue;
-    out.T_target_source_rival = rival.T_target_source;
     out.reason = AlignReason::kAmbiguous;
     return;
   }
 }
 
-}  // namespace
+std::string words(const Alignment& a) {
+  const auto percent = [](double share) { return std::to_string(std::lround(100.0 * share)) + " %"; };
+  std::string loose;
+  for (const std::string& direction : a.loose) loose += (loose.empty() ? "" : ", ") + direction;
+  switch (a.reason) {
+    case AlignReason::kAccepted:
+      return "aligned: " + percent(a.overlap()) + " overlap, " + std::to_string(std::lround(1000.0 * a.rms)) +
+             " mm rms";
+    case AlignReason::kNoMap: return "there is no map to align yet; let both explore first";
+    case AlignReason::kLowOverlap:
+      return "only " + percent(a.overlap()) + " of either map lies on the other; map more of what both have seen" +
+             std::string(", or give a guess");
+    case AlignReason::kDiverged:
+      return "the maps contradict each other there (" + percent(a.against_upright) + " of the walls, " +
+             percent(a.against_level) + " of the floors and ceilings); give a better guess, or map the place anew";
+    case AlignReason::kDegenerate:
+      return "the walls that both have seen leave it open: " + loose + "; map something that faces that way";
+    case AlignReason::kAmbiguous:
+      return "another place explains the maps as well; give a guess, or map more of what sets the places apart";
+  }
+  return {};
+}
 
-Alignment align(const AlignMap& target, const AlignMap& source, const std::optional<Transform>& guess, int threads) {
+Alignment worded(Alignment alignment) {
+  alignment.message = words(alignment);
+  return alignment;
+}
+
+Alignment find(const AlignMap& target, const AlignMap& source, const std::optional<Transform>& guess, int threads) {
   Alignment out;
   if (!has_map(target) || !has_map(source)) return out;
   const std::vector<Hypothesis> hypotheses = find_hypotheses(target, source, guess, threads);
@@ -130,35 +154,18 @@ Alignment align(const AlignMap& target, const AlignMap& source, const std::optio
   return out;
 }
 
-Alignment recheck(const AlignMap& target, const AlignMap& source, const Transform& T_target_source, int threads) {
-  Alignment out;
-  if (!has_map(target) || !has_map(source)) return out;
-  out.hypotheses = 1;
-  judge(target, source, refine_finely(target, source, T_target_source, threads), Origin::kGuess, threads, out);
-  return out;
+}  // namespace
+
+Alignment align(const AlignMap& target, const AlignMap& source, const std::optional<Transform>& guess, int threads) {
+  return worded(find(target, source, guess, threads));
 }
 
-std::string words(const Alignment& a) {
-  const auto percent = [](double share) { return std::to_string(std::lround(100.0 * share)) + " %"; };
-  std::string loose;
-  for (const std::string& direction : a.loose) loose += (loose.empty() ? "" : ", ") + direction;
-  switch (a.reason) {
-    case AlignReason::kAccepted:
-      return "aligned: " + percent(a.overlap()) + " overlap, " + std::to_string(std::lround(1000.0 * a.rms)) +
-             " mm rms";
-    case AlignReason::kNoMap: return "there is no map to align yet; let both explore first";
-    case AlignReason::kLowOverlap:
-      return "only " + percent(a.overlap()) + " of either map lies on the other; map more of what both have seen" +
-             std::string(", or give a guess");
-    case AlignReason::kDiverged:
-      return "the maps contradict each other there (" + percent(a.against_upright) +
-             " of the walls); give a better guess, or map the place anew";
-    case AlignReason::kDegenerate:
-      return "the walls that both have seen leave it open: " + loose + "; map something that faces that way";
-    case AlignReason::kAmbiguous:
-      return "another place explains the maps as well; give a guess, or map more of what sets the places apart";
-  }
-  return {};
+Alignment recheck(const AlignMap& target, const AlignMap& source, const Transform& T_target_source, int threads) {
+  Alignment out;
+  if (!has_map(target) || !has_map(source)) return worded(out);
+  out.hypotheses = 1;
+  judge(target, source, refine_finely(target, source, T_target_source, threads), Origin::kGuess, threads, out);
+  return worded(out);
 }
 
 }  // namespace concord

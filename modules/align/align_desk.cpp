@@ -166,7 +166,7 @@ Result<AlignDesk::Acceptance> AlignDesk::accept(const AlignDecision& decision, c
   }
   const AlignResult& result = found->result;
   if (!result.evidence.accepted()) {
-    return refuse(Code::kBadRequest, "it was refused (" + result.evidence.reason +
+    return refuse(Code::kBadRequest, std::string("it was refused (") + name(result.evidence.reason) +
                                          "); who knows better places the agent with: concord set-transform");
   }
   if (now - result.utime > kOpenFor) return expired(decision.align_id);

@@ -7,7 +7,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include "align/account.hpp"
 #include "bus/recent_answers.hpp"
 
 namespace concord {
@@ -81,9 +80,9 @@ void AlignNode::tell(const AlignDesk::Case& one) {
     return answer(context_.bus, {id, context_.process, false, name(Code::kBusy), how + "; ask again", 0, 0});
   }
   say(one.result);
-  const AlignEvidence& evidence = one.result.evidence;
+  const Alignment& evidence = one.result.evidence;
   const auto overlap = static_cast<std::int64_t>(std::lround(100.0 * evidence.overlap()));
-  answer(context_.bus, {id, context_.process, evidence.accepted(), evidence.accepted() ? "OK" : evidence.reason,
+  answer(context_.bus, {id, context_.process, evidence.accepted(), evidence.accepted() ? "OK" : name(evidence.reason),
                         evidence.message, one.result.source.revision, overlap});
 }
 
@@ -148,6 +147,7 @@ void AlignNode::start(AlignTask task) {
                 const auto begun = std::chrono::steady_clock::now();
                 auto alignment = carry_out(*shared, threads);
                 const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begun;
+                if (alignment) alignment->ms = 1e-3 * took.count();
                 return Found{std::move(alignment), std::llround(took.count())};
               })};
 }
@@ -157,8 +157,7 @@ void AlignNode::finish(const AlignTask& task, const Found& found) {
     desk_.give_up(task.id);
     return replies_.deny(kRequests, task.id, found.alignment.error());
   }
-  const double ms = 1e-3 * static_cast<double>(found.took);
-  const AlignResult* result = desk_.finish(task, result_of(task, *found.alignment, ms, context_.bus.now()));
+  const AlignResult* result = desk_.finish(task, result_of(task, *found.alignment, context_.bus.now()));
   context_.counters.add(std::string("requests.") + name(found.alignment->reason));
   if (result == nullptr) return;  // dropped meanwhile
   say(*result);
@@ -171,7 +170,7 @@ void AlignNode::finish_watch(const AlignTask& task, const Found& found) {
   watch_.looked_at(agent, layers_.now(), found.took, now);
   context_.counters.add("looks");
   if (!found.alignment) return context_.counters.refused("watch", found.alignment.error());
-  AlignResult result = result_of(task, *found.alignment, 1e-3 * static_cast<double>(found.took), now);
+  AlignResult result = result_of(task, *found.alignment, now);
   const Slip slip = slip_between(*task.T_target_source, result.evidence.T_target_source, task.p_source_middle);
   if (!result.evidence.accepted()) {
     // Too little in common says nothing; but what the others contradict people should know.

@@ -183,4 +183,15 @@ Result<Alignment> carry_out(const AlignTask& task, int threads) {
   return far.accepted() ? far : near;
 }
 
+AlignResult result_of(const AlignTask& task, Alignment alignment, std::int64_t utime) {
+  AlignResult out;
+  out.id = task.id;
+  out.target = task.target_agent;
+  out.source = task.used_source;
+  out.layers = task.used_layers;
+  out.evidence = std::move(alignment);
+  out.utime = utime;
+  return out;
+}
+
 }  // namespace concord

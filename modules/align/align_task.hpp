@@ -61,4 +61,7 @@ inline constexpr double kRecheckMargin = 2.0;  // metres
 /// A pure function of the task; `threads` does not change a bit of it. Refused: see make_align_map.
 [[nodiscard]] Result<Alignment> carry_out(const AlignTask& task, int threads);
 
+/// What was found with what it was found from, as it is told.
+[[nodiscard]] AlignResult result_of(const AlignTask& task, Alignment alignment, std::int64_t utime);
+
 }  // namespace concord

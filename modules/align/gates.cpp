@@ -26,6 +26,8 @@ constexpr double kMinLevel = 1.0;  // square metres of floor or ceiling that lie
 constexpr double kMinRise = 1.0;   // square metres
 constexpr double kMinShareRise = 0.02;
 constexpr double kMaxLevelAgainst = 0.15;
+/// Of all that lies right: where a map has hardly any floor, what is called level is edges of other things.
+constexpr double kFewAgainst = 0.02;
 constexpr double kPlausibleAgainst = 0.05;
 constexpr double kPlausibleLevelAgainst = 0.08;
 
@@ -42,19 +44,14 @@ double contradicted_share(const Verdicts& v) {
   return v.matched + v.contradicted > 0.0 ? v.contradicted / (v.matched + v.contradicted) : 0.0;
 }
 
-}  // namespace
-
-const char* name(AlignReason reason) {
-  switch (reason) {
-    case AlignReason::kAccepted: return "ACCEPTED";
-    case AlignReason::kNoMap: return "NO_MAP";
-    case AlignReason::kLowOverlap: return "LOW_OVERLAP";
-    case AlignReason::kDiverged: return "DIVERGED";
-    case AlignReason::kDegenerate: return "DEGENERATE";
-    case AlignReason::kAmbiguous: return "AMBIGUOUS";
-  }
-  return "?";
+/// Whether floors and ceilings say that the heights are wrong.
+bool levels_contradict(const Support& s) {
+  const Verdicts level = s.level();
+  return level.share_against() > kMaxLevelAgainst &&
+         level.against() > kFewAgainst * (s.upright().matched + level.matched);
 }
+
+}  // namespace
 
 AlignReason check_gates(const Support& s, Origin origin) {
   const Gates& gates = gates_for(origin);
@@ -63,7 +60,7 @@ AlignReason check_gates(const Support& s, Origin origin) {
   const double walls = upright.matched;
   if (upright.share_against() > between(kMaxAgainstRoom, kMaxAgainstBuilding, walls) ||
       contradicted_share(upright) > between(kMaxContradictedRoom, kMaxContradictedBuilding, walls) ||
-      s.level().share_against() > kMaxLevelAgainst) {
+      levels_contradict(s)) {
     return AlignReason::kDiverged;
   }
   if (s.level().matched < kMinLevel) return AlignReason::kDegenerate;

@@ -1,19 +1,9 @@
 #pragma once
 
 #include "align/evidence.hpp"
+#include "core/alignment.hpp"
 
 namespace concord {
-
-enum class AlignReason {
-  kAccepted,
-  kNoMap,       ///< too little surface in one of the two
-  kLowOverlap,  ///< too little of either lies on the other
-  kDiverged,    ///< refinement came to no end, or the two contradict each other there
-  kDegenerate,  ///< the surfaces leave a direction open
-  kAmbiguous,   ///< another place explains the two as well
-};
-/// As it travels, e.g. "LOW_OVERLAP".
-[[nodiscard]] const char* name(AlignReason reason);
 
 /// Surface points below which a map is none: two square metres at 10 cm.
 inline constexpr std::size_t kMinSurfacePoints = 200;

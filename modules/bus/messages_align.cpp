@@ -98,19 +98,22 @@ Result<void> check_texts(const align_result_t& in) {
   return {};
 }
 
-Result<AlignEvidence> evidence_of(const align_result_t& in) {
+Result<Alignment> evidence_of(const align_result_t& in) {
   if (auto fine = check_numbers(in); !fine) return tl::unexpected(fine.error());
   if (auto fine = check_texts(in); !fine) return tl::unexpected(fine.error());
   const auto T = wire::from_wire(in.T_target_source);
   if (!T) return tl::unexpected(T.error());
-  AlignEvidence out;
-  out.reason = in.reason;
+  const auto reason = align_reason(in.reason);
+  if (!reason) return refuse(Code::kBadRequest, "no such reason: " + in.reason);
+  Alignment out;
+  out.reason = *reason;
   out.message = in.message;
   out.T_target_source = *T;
   out.overlap_source = in.overlap_source;
   out.overlap_target = in.overlap_target;
   out.rms = in.rms;
-  std::copy(std::begin(in.covariance), std::end(in.covariance), out.covariance.begin());
+  std::copy(std::begin(in.covariance), std::end(in.covariance), out.covariance.data());
+  out.covariance.transposeInPlace();  // row by row there, by columns here
   out.loose = in.loose;
   out.against_upright = in.against_walls;
   out.against_level = in.against_floors;
@@ -121,14 +124,15 @@ Result<AlignEvidence> evidence_of(const align_result_t& in) {
   return out;
 }
 
-void put_evidence(const AlignEvidence& value, align_result_t& out) {
-  out.reason = value.reason;
+void put_evidence(const Alignment& value, align_result_t& out) {
+  out.reason = name(value.reason);
   out.message = value.message;
   out.T_target_source = wire::to_wire(value.T_target_source);
   out.overlap_source = value.overlap_source;
   out.overlap_target = value.overlap_target;
   out.rms = value.rms;
-  std::copy(value.covariance.begin(), value.covariance.end(), std::begin(out.covariance));
+  const Eigen::Matrix<double, 6, 6> by_rows = value.covariance.transpose();
+  std::copy_n(by_rows.data(), 36, std::begin(out.covariance));
   out.loose_count = static_cast<std::int32_t>(value.loose.size());
   out.loose = value.loose;
   out.against_walls = value.against_upright;

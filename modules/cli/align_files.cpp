@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "align/account.hpp"
+#include "align/align.hpp"
 #include "align/cloud.hpp"
 #include "cli/align_page.hpp"
 #include "cli/align_report.hpp"
@@ -58,7 +58,7 @@ Result<AlignMap> prepare(const Loaded& loaded, int threads) {
 }
 
 Result<void> draw(const AlignFiles& files, const AlignMap& target, const AlignMap& source, const Alignment& found) {
-  AlignPage page{files.target, files.source,          words(found),         &target,
+  AlignPage page{files.target, files.source,          found.message,        &target,
                  &source,      Transform::Identity(), found.T_target_source};
   if (files.T_target_source) page.T_target_source_before = *files.T_target_source;
   return write_align_page(page, files.picture);
@@ -87,15 +87,15 @@ Outcome align_files(const AlignFiles& files, const Common& common) {
   if (!source) return fail_on(files.source, source.error());
   const auto target = prepare(*target_file, threads);
   if (!target) return fail_on(files.target, target.error());
-  const Alignment found = align(*target, *source, files.T_target_source, threads);
+  Alignment found = align(*target, *source, files.T_target_source, threads);
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
-  const AlignEvidence evidence = account_of(found, took.count());
+  found.ms = took.count();
   if (!files.picture.empty()) {
     const auto drawn = draw(files, *target, *source, found);
     if (!drawn) return fail(drawn.error());
   }
-  common.print(to_json(evidence), to_words(evidence));
-  return evidence.accepted() ? Exit::kDone : Exit::kRefused;
+  common.print(to_json(found), to_words(found));
+  return found.accepted() ? Exit::kDone : Exit::kRefused;
 }
 
 }  // namespace concord

@@ -11,10 +11,15 @@ namespace {
 std::string percent(double share) { return format_number(100.0 * share, 1) + " %"; }
 
 /// One standard deviation of the shift along x, y and z, metres.
-std::array<double, 3> shift_sigmas(const AlignEvidence& evidence) {
+std::array<double, 3> shift_sigmas(const Alignment& evidence) {
   std::array<double, 3> out{};
-  for (std::size_t i = 0; i < 3; ++i) out[i] = std::sqrt(std::max(0.0, evidence.covariance[7 * (i + 3)]));
+  for (int i = 0; i < 3; ++i) out[i] = std::sqrt(std::max(0.0, evidence.covariance(i + 3, i + 3)));
   return out;
+}
+
+std::vector<double> row_by_row(const Eigen::Matrix<double, 6, 6>& matrix) {
+  const Eigen::Matrix<double, 6, 6> by_rows = matrix.transpose();
+  return {by_rows.data(), by_rows.data() + by_rows.size()};
 }
 
 std::string transform_words(const Transform& transform) {
@@ -25,16 +30,16 @@ std::string transform_words(const Transform& transform) {
 
 }  // namespace
 
-nlohmann::json to_json(const AlignEvidence& evidence) {
+nlohmann::json to_json(const Alignment& evidence) {
   return {{"accepted", evidence.accepted()},
-          {"reason", evidence.reason},
+          {"reason", name(evidence.reason)},
           {"message", evidence.message},
           {"T_target_source", to_numbers(evidence.T_target_source)},
           {"overlap", evidence.overlap()},
           {"overlap_source", evidence.overlap_source},
           {"overlap_target", evidence.overlap_target},
           {"rms_m", evidence.rms},
-          {"covariance", evidence.covariance},
+          {"covariance", row_by_row(evidence.covariance)},
           {"sigma_m", shift_sigmas(evidence)},
           {"degenerate", evidence.loose},
           {"against_walls", evidence.against_upright},
@@ -45,9 +50,9 @@ nlohmann::json to_json(const AlignEvidence& evidence) {
           {"ms", evidence.ms}};
 }
 
-std::string to_words(const AlignEvidence& evidence) {
+std::string to_words(const Alignment& evidence) {
   const auto sigma = shift_sigmas(evidence);
-  return std::string(evidence.accepted() ? "accepted" : "refused") + "      " + evidence.reason + ": " +
+  return std::string(evidence.accepted() ? "accepted" : "refused") + "      " + name(evidence.reason) + ": " +
          evidence.message + "\nT_target_source " + transform_words(evidence.T_target_source) + "\noverlap       " +
          percent(evidence.overlap_source) + " of the source, " + percent(evidence.overlap_target) +
          " of the target\nrms           " + format_number(1000.0 * evidence.rms, 0) +

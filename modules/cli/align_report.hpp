@@ -9,8 +9,8 @@
 namespace concord {
 
 /// What an alignment was judged by, as the client says it.
-[[nodiscard]] nlohmann::json to_json(const AlignEvidence& evidence);
-[[nodiscard]] std::string to_words(const AlignEvidence& evidence);
+[[nodiscard]] nlohmann::json to_json(const Alignment& evidence);
+[[nodiscard]] std::string to_words(const Alignment& evidence);
 
 /// The same with who was looked at, up to which revision.
 [[nodiscard]] nlohmann::json to_json(const AlignResult& result);

@@ -9,16 +9,16 @@
 namespace concord {
 namespace {
 
-struct Alignment {
+struct Placing {
   std::string agent, transform, frame, author;
 };
 
-Outcome set_transform(const Alignment& alignment, const Common& common) {
-  if (!is_name(alignment.agent)) return bad_name(alignment.agent);
-  const auto T_map_agent = parse_transform(alignment.transform);
+Outcome set_transform(const Placing& placing, const Common& common) {
+  if (!is_name(placing.agent)) return bad_name(placing.agent);
+  const auto T_map_agent = parse_transform(placing.transform);
   if (!T_map_agent) return fail(T_map_agent.error());
   Live live(common);
-  const TransformRequest request{live.new_id(), author_or_user(alignment.author), alignment.agent, alignment.frame,
+  const TransformRequest request{live.new_id(), author_or_user(placing.author), placing.agent, placing.frame,
                                  *T_map_agent};
   return print_revision(live.ask("in/transform", request), common);
 }
@@ -40,13 +40,13 @@ void add_agent_request(Program& program, const std::string& name, const std::str
 }  // namespace
 
 void add_requests(Program& program) {
-  auto alignment = std::make_shared<Alignment>();
+  auto placing = std::make_shared<Placing>();
   CLI::App& align = program.add("set-transform", "puts an agent's submap into the map",
-                                [alignment](const Common& common) { return set_transform(*alignment, common); });
-  align.add_option("agent", alignment->agent, "the agent's id")->required();
-  align.add_option("transform", alignment->transform, "T_map_agent as \"x y z qx qy qz qw\"")->required();
-  align.add_option("--frame", alignment->frame, "the agent's frame it was found for; without it the present one");
-  align.add_option("--author", alignment->author, "who asks; without it $USER");
+                                [placing](const Common& common) { return set_transform(*placing, common); });
+  align.add_option("agent", placing->agent, "the agent's id")->required();
+  align.add_option("transform", placing->transform, "T_map_agent as \"x y z qx qy qz qw\"")->required();
+  align.add_option("--frame", placing->frame, "the agent's frame it was found for; without it the present one");
+  align.add_option("--author", placing->author, "who asks; without it $USER");
 
   add_agent_request(program, "reset", "drops what an agent sent; it begins anew", AgentRequest::Op::kReset);
   add_agent_request(program, "remove", "forgets an agent and what it sent", AgentRequest::Op::kRemove);

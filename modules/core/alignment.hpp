@@ -1,10 +1,10 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/requests.hpp"
@@ -39,24 +39,37 @@ struct AlignDecision {
   std::int64_t utime = 0;
 };
 
-/// What speaks for an alignment and against it.
-struct AlignEvidence {
-  std::string reason;   ///< ACCEPTED, NO_MAP, LOW_OVERLAP, DIVERGED, DEGENERATE or AMBIGUOUS
-  std::string message;  ///< for a person
+enum class AlignReason {
+  kAccepted,
+  kNoMap,       ///< too little surface in one of the two
+  kLowOverlap,  ///< too little of either lies on the other
+  kDiverged,    ///< refinement came to no end, or the two contradict each other there
+  kDegenerate,  ///< the surfaces leave a direction open
+  kAmbiguous,   ///< another place explains the two as well
+};
+/// As it travels, e.g. "LOW_OVERLAP".
+[[nodiscard]] const char* name(AlignReason reason);
+[[nodiscard]] std::optional<AlignReason> align_reason(std::string_view name);
+
+/// Where a source was found in a target, with all that speaks for it and against it.
+struct Alignment {
+  AlignReason reason = AlignReason::kNoMap;
+  std::string message;                                ///< for a person: what was found, or why not and what to do
   Transform T_target_source = Transform::Identity();  ///< the best that was found, accepted or not
   double overlap_source = 0.0;                        ///< share of the source's flat surface that lies on the target's
   double overlap_target = 0.0;
-  double rms = 0.0;                     ///< metres across the surface
-  std::array<double, 36> covariance{};  ///< of turn (rad) and shift (m) in the target's frame, row by row
-  std::vector<std::string> loose;       ///< directions that the surfaces leave open
-  double against_upright = 0.0;         ///< of the walls that the other map can speak of: the share it speaks against
-  double against_level = 0.0;           ///< the same of floors and ceilings
-  double free_space_violation = 0.0;    ///< share of the surface in what the other saw to be free
+  double rms = 0.0;  ///< metres across the surface, of the pairs that the kernel trusts
+  /// Of a small turn (rad) and shift (m) in the target's axes, about the middle of the pairs.
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  std::vector<std::string> loose;     ///< directions that the surfaces leave open, e.g. "slides along x (...)"
+  double against_upright = 0.0;       ///< of the walls that the other map can speak of: the share it speaks against
+  double against_level = 0.0;         ///< the same of floors and ceilings
+  double free_space_violation = 0.0;  ///< share of the surface, both ways, in what the other saw to be free
   std::int32_t iterations = 0;
   std::int32_t hypotheses = 0;  ///< places that were refined and judged
-  double ms = 0.0;              ///< milliseconds it took
+  double ms = 0.0;              ///< milliseconds it took, as who asked for it measured
 
-  [[nodiscard]] bool accepted() const { return reason == "ACCEPTED"; }
+  [[nodiscard]] bool accepted() const { return reason == AlignReason::kAccepted; }
   /// Of the map that is covered better.
   [[nodiscard]] double overlap() const { return std::max(overlap_source, overlap_target); }
 };
@@ -74,7 +87,7 @@ struct AlignResult {
   std::string target;  ///< empty: the map
   Used source;
   std::vector<Used> layers;  ///< that made up the target, by id
-  AlignEvidence evidence;
+  Alignment evidence;
   bool open = false;        ///< it can be accepted
   double slip = 0.0;        ///< of an offer: metres by which the agent would be moved, at its middle
   double slip_angle = 0.0;  ///< radians

@@ -176,6 +176,7 @@ std::vector<Pair> real_pairs() {
       out.push_back({"balm_building" + ending, load_scene(data / ("balm_building/session_A_0.1m" + ending), 0.1),
                      load_scene(data / ("balm_building/session_B_0.1m" + ending), 0.1), T, 0.2, 0.71});
     }
+    out.push_back({"balm_building .bt, .pcd", out[0].target, out[1].source, T, 0.2, 0.71});
   }
   if (fs::exists(data / "registration")) {
     out.push_back({"registration", load_scene(data / "registration/target.ply", 0.1),
@@ -185,6 +186,8 @@ std::vector<Pair> real_pairs() {
   if (fs::exists(data / "slam_xr_maps")) {
     out.push_back({"slam_xr", load_scene(data / "slam_xr_maps/test4.bt", 0.05),
                    load_scene(data / "slam_xr_maps/test5.bt", 0.05), Transform::Identity(), 0.15, 1.0});
+    out.push_back({"slam_xr .bt, .pcd", out.back().target, load_scene(data / "slam_xr_maps/test5.pcd", 0.1),
+                   Transform::Identity(), 0.15, 1.0});
   }
   return out;
 }

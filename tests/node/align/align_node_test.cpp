@@ -86,7 +86,7 @@ TEST_F(AlignStation, AnotherRoomIsRefusedAndCannotBeAccepted) {
   const Answer answer = found(guess_of("a", "robot2", "", kT_map_left * kT_left_right));
   EXPECT_FALSE(answer.ok);
   ASSERT_FALSE(results_.empty());
-  EXPECT_EQ(answer.code, results_.back().evidence.reason);
+  EXPECT_EQ(answer.code, name(results_.back().evidence.reason));
   EXPECT_FALSE(results_.back().open);
   EXPECT_EQ(accept("d", "a").code, "BAD_REQUEST");
   EXPECT_TRUE(placements_.empty());

@@ -21,7 +21,7 @@ Parts parts_of(const Points& points, const Transform& T_target_source, int threa
 }
 
 void expect_found(const Parts& parts, const Alignment& answer) {
-  EXPECT_TRUE(answer.accepted()) << name(answer.reason) << ": " << words(answer);
+  EXPECT_TRUE(answer.accepted()) << name(answer.reason) << ": " << answer.message;
   EXPECT_LT(metres_off(answer.T_target_source, parts.T_target_source), 0.05);
   EXPECT_LT(degrees_off(answer.T_target_source, parts.T_target_source), 0.5);
 }
@@ -63,7 +63,7 @@ TEST(Align, TakesTheTiltThatAGuessMeans) {
   const Parts parts = parts_of(room(), transform(1.0, 2.0, 0.5, 0.4, 0.0, degrees(90)));
   const Transform guess = parts.T_target_source * transform(0.3, -0.2, 0.2, 0.0, degrees(3), 0.0);
   const Alignment answer = align(parts.target, parts.source, guess, 1);
-  EXPECT_LT(metres_off(answer.T_target_source, parts.T_target_source), 0.05) << words(answer);
+  EXPECT_LT(metres_off(answer.T_target_source, parts.T_target_source), 0.05) << answer.message;
 }
 
 TEST(Align, GivesTheSameBitsOnAnyNumberOfThreads) {
@@ -90,10 +90,10 @@ TEST(Align, RefusesACorridorAndSaysWhereItSlides) {
        {std::optional<Transform>(Transform::Identity()), std::optional<Transform>()}) {
     const Alignment answer = align(target, source, guess, 1);
     EXPECT_FALSE(answer.accepted());
-    ASSERT_EQ(answer.reason, AlignReason::kDegenerate) << words(answer);
+    ASSERT_EQ(answer.reason, AlignReason::kDegenerate) << answer.message;
     ASSERT_FALSE(answer.loose.empty());
     EXPECT_EQ(answer.loose.front().rfind("slides along x", 0), 0U) << answer.loose.front();
-    EXPECT_NE(words(answer).find("slides along x"), std::string::npos);
+    EXPECT_NE(answer.message.find("slides along x"), std::string::npos);
   }
 }
 
@@ -102,7 +102,7 @@ TEST(Align, NamesTheDirectionInTheAxesOfTheTarget) {
   const AlignMap target = cloud_map(moved(corridor(0.0, 10.0), turned));
   const AlignMap source = cloud_map(corridor(3.0, 13.0));
   const Alignment answer = align(target, source, turned, 1);
-  ASSERT_EQ(answer.reason, AlignReason::kDegenerate) << words(answer);
+  ASSERT_EQ(answer.reason, AlignReason::kDegenerate) << answer.message;
   EXPECT_EQ(answer.loose.front().rfind("slides along y", 0), 0U) << answer.loose.front();
 }
 
@@ -132,8 +132,7 @@ TEST(Align, RefusesARoomThatIsItsOwnTwin) {
   add_box(bare, {-2.0, -2.0, 0.0}, {2.0, 2.0, 2.5});
   const AlignMap map = cloud_map(bare);
   const Alignment answer = align(map, map, std::nullopt, 1);
-  EXPECT_EQ(answer.reason, AlignReason::kAmbiguous) << words(answer);
-  EXPECT_TRUE(answer.T_target_source_rival.has_value());
+  EXPECT_EQ(answer.reason, AlignReason::kAmbiguous) << answer.message;
   // A person who says which way round settles it.
   EXPECT_TRUE(align(map, map, transform(0.2, -0.3, 0.1, degrees(10)), 1).accepted());
 }
@@ -171,7 +170,7 @@ TEST(Align, SurvivesAGuessThatIsFarAway) {
 TEST(Recheck, CorrectsASmallSlipAndSeesALargeOne) {
   const AlignMap map = cloud_map(room());
   const Alignment slipped = recheck(map, map, transform(0.06, -0.05, 0.03, degrees(1)), 1);
-  EXPECT_TRUE(slipped.accepted()) << words(slipped);
+  EXPECT_TRUE(slipped.accepted()) << slipped.message;
   EXPECT_LT(metres_off(slipped.T_target_source, Transform::Identity()), 0.02);
   EXPECT_FALSE(recheck(map, map, transform(1.0, 0.7, 0.0, degrees(20)), 1).accepted());
 }
@@ -185,7 +184,7 @@ TEST(Align, RecoversRandomTransforms) {
     const double x = within(20.0), y = within(20.0), z = within(3.0);
     const Transform T = transform(x, y, z, within(std::numbers::pi));
     const Alignment answer = align(target, cloud_map(moved(points, T.inverse())), std::nullopt, 2);
-    EXPECT_TRUE(answer.accepted()) << words(answer);
+    EXPECT_TRUE(answer.accepted()) << answer.message;
     EXPECT_LT(metres_off(answer.T_target_source, T), 0.05);
     EXPECT_LT(degrees_off(answer.T_target_source, T), 0.5);
   }

@@ -58,14 +58,15 @@ Zone zone(const std::string& name, Volume volume) {
 }
 
 AlignResult align_result() {
-  AlignEvidence evidence;
-  evidence.reason = "DEGENERATE";
+  Alignment evidence;
+  evidence.reason = AlignReason::kDegenerate;
   evidence.message = "the walls leave it open";
   evidence.T_target_source = some_transform();
   evidence.overlap_source = 0.5;
   evidence.overlap_target = 1.0;
   evidence.rms = 0.02;
-  evidence.covariance[7] = 1e-4;
+  evidence.covariance(1, 1) = 1e-4;
+  evidence.covariance(0, 1) = 2e-5;
   evidence.loose = {"slides along x (1.00 0.00 0.00)"};
   evidence.against_upright = 0.01;
   evidence.iterations = 40;

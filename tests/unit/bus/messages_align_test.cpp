@@ -15,7 +15,7 @@ AlignResult a_result() {
   AlignResult out;
   out.id = "a";
   out.source = {"robot1", "odom", 1};
-  out.evidence.reason = "ACCEPTED";
+  out.evidence.reason = AlignReason::kAccepted;
   return out;
 }
 
