@@ -15,7 +15,7 @@ struct Asset {
   std::string class_name;  ///< is_title: what its voxels are labelled
   std::string file;        ///< its file's name in the asset folder
   double unit = 1.0;       ///< metres per unit of the file
-  std::int64_t gltf_bytes = 0;  ///< of STATE/assets/gltf/NAME.glb, in metres and y up, for headsets; 0: none yet
+  std::int64_t gltf_bytes = 0;  ///< of STATE/assets/gltf/NAME.glb, in metres, axes of the file; 0: none yet
   bool operator==(const Asset&) const = default;
 };
 

@@ -15,7 +15,7 @@ tl::unexpected<Error> bad(Code code, const std::string& what) { return refuse(co
 
 Result<Asset> asset_of(const std::string& name, const YAML::Node& node) {
   if (!is_name(name)) return bad(Code::kBadName, "'" + name + "' is no name of an asset");
-  Asset asset{name, name, "", 1.0};
+  Asset asset{name, name, "", 1.0, 0};
   for (const auto& entry : node) {
     const auto key = entry.first.as<std::string>();
     if (key == "file") {

@@ -28,6 +28,7 @@ AssetsNode::AssetsNode(const NodeContext& context, Parts parts)
     : context_(context),
       parts_(std::move(parts)),
       replies_(context),
+      gltf_(context.site.state / "assets"),
       list_(context.bus, context.counters, "out/assets", context.site.stream.bytes_per_second) {
   Bus& bus = context_.bus;
   listen<AssetRequest>(bus, context_.counters, context_.process, kRequests,
@@ -46,6 +47,7 @@ AssetsNode::AssetsNode(const NodeContext& context, Parts parts)
     history_id_.clear();  // what was not answered in a second is asked again
     ask_history();
     send_waiting();
+    if (const auto written = gltf_.write_next(assets_); !written) context_.counters.refused("assets", written.error());
     list();
   });
 }
@@ -55,7 +57,10 @@ void AssetsNode::list() {
   if (!read) return context_.counters.refused("assets", read.error());
   assets_ = std::move(*read);
   std::vector<Asset> all;
-  for (const auto& [name, asset] : assets_) all.push_back(asset);
+  for (auto& [name, asset] : assets_) {
+    asset.gltf_bytes = gltf_.bytes_of(asset);
+    all.push_back(asset);
+  }
   list_.set(all);
 }
 

@@ -7,6 +7,7 @@
 #include "bus/messages_asset.hpp"
 #include "bus/process.hpp"
 #include "bus/replies.hpp"
+#include "semantic/gltf_store.hpp"
 #include "semantic/labels.hpp"
 
 namespace concord {
@@ -58,6 +59,7 @@ class AssetsNode {
   NodeContext context_;
   Parts parts_;
   Replies replies_;
+  GltfStore gltf_;
   ListSender<Asset> list_;
   std::map<std::string, Asset> assets_;
   std::map<std::string, std::string> asked_;    ///< requests whose askers wait for an answer; the remark in it

@@ -147,7 +147,9 @@ void SemanticNode::on_request(const LabelRequest& request) {
 
 Result<void> SemanticNode::commit(const std::string& id, const std::string& author, std::uint64_t content,
                                   Labels::What what) {
-  return commit({{labels_.revision() + 1, id, author, context_.bus.now(), content, std::move(what)}});
+  std::vector<LabelCorrection> one;
+  one.push_back({labels_.revision() + 1, id, author, context_.bus.now(), content, std::move(what)});
+  return commit(one);
 }
 
 /// All of them or, where the disk says no, none.

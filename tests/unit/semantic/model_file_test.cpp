@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "sample_meshes.hpp"
+#include "semantic/gltf.hpp"
 
 namespace concord {
 namespace {
@@ -55,6 +56,20 @@ TEST_F(ModelFile, ReadsBinaryDataThatBeginsWithALineEnd) {
   ASSERT_EQ(mesh->vertices.size(), 3U);
   EXPECT_EQ(mesh->vertices[0], Eigen::Vector3d(first, 0, 0));
   EXPECT_EQ(mesh->vertices[1], Eigen::Vector3d(1, 0, 0));
+}
+
+TEST_F(ModelFile, AGlbThatIsWrittenIsReadAsItWas) {
+  const TriangleMesh mesh = joined(box_mesh({-1, 0, 0.125}, {1, 2, 3}), box_mesh({4, 0, 0}, {5, 1, 1}));
+  const Bytes bytes = write_glb(mesh, 0.5);
+  const auto read = read_model_file(write("boxes.glb", std::string(bytes.begin(), bytes.end())));
+  ASSERT_TRUE(read) << read.error().message;
+  ASSERT_EQ(read->triangles.size(), mesh.triangles.size());
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    for (int corner = 0; corner < 3; ++corner) {
+      const auto k = static_cast<std::size_t>(corner);
+      EXPECT_EQ(read->vertices[read->triangles[i][k]], 0.5 * mesh.vertices[mesh.triangles[i][k]]);
+    }
+  }
 }
 
 TEST_F(ModelFile, RefusesWhatIsNoModel) {
