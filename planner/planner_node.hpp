@@ -21,7 +21,7 @@ class PlannerNode {
 
  private:
   void on_frame(const std::string& frame_id);
-  void on_zones(const std::vector<Zone>& zones);
+  void on_zones();
   void on_request(const PathRequest& request);
   void project();
   void speak();
@@ -33,6 +33,7 @@ class PlannerNode {
   BrickSender sender_;
   BrickReceiver receiver_;
   ListReceiver<Zone> zones_;
+  ListReceiver<Zone> label_zones_;  ///< around things that robots keep away from; none while semantic has said none
 };
 
 }  // namespace concord

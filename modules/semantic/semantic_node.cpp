@@ -68,7 +68,8 @@ SemanticNode::SemanticNode(const NodeContext& context)
       detections_node_(context,
                        {labels_, map_, assets_node_, [this](const WorkFrame& frame) { return T_map_frame(frame); }}),
       files_node_(context, {labels_, [this](const auto& visit) { return store_.for_each(visit); },
-                            [this](const std::vector<LabelCorrection>& all) { return commit(all); }}) {
+                            [this](const std::vector<LabelCorrection>& all) { return commit(all); }}),
+      margins_node_(context, labels_, view_) {
   restore();
   listen_to_the_map();
   Bus& bus = context_.bus;
@@ -82,6 +83,7 @@ SemanticNode::SemanticNode(const NodeContext& context)
     if (begun_ || !map_receiver_.synced()) return;
     begun_ = true;  // what shows is whole: before, a restart would look like labels that went
     label_stream_.begin("map");
+    margins_node_.begin();
   });
   bus.every(kSlotPeriod, [this] { tell_slots(); });
   bus.every(kCountPeriod, [this] {
@@ -159,6 +161,7 @@ Result<void> SemanticNode::commit(const std::vector<LabelCorrection>& correction
   for (const LabelCorrection& correction : corrections) labels_.apply(correction, touched);
   refresh(touched);
   label_stream_.send_now();
+  margins_node_.touch();  // a class may have another name
   has_new_slots_ = true;
   return {};
 }

@@ -15,6 +15,7 @@
 #include "semantic/label_files_node.hpp"
 #include "semantic/label_view.hpp"
 #include "semantic/labels.hpp"
+#include "semantic/margins_node.hpp"
 #include "semantic/semantic_store.hpp"
 
 namespace concord {
@@ -63,6 +64,7 @@ class SemanticNode {
   AssetsNode assets_node_;
   DetectionsNode detections_node_;
   LabelFilesNode files_node_;
+  MarginsNode margins_node_;
 };
 
 }  // namespace concord
