@@ -11,16 +11,16 @@ inline constexpr std::size_t kMaxAssets = 1000;
 
 /// A CAD model that the server keeps, to be put into the map.
 struct Asset {
-  std::string name;        ///< is_name; unique
-  std::string class_name;  ///< is_title: what its voxels are labelled
-  std::string file;        ///< its file's name in the asset folder
-  double unit = 1.0;       ///< metres per unit of the file
+  std::string name;             ///< is_name; unique
+  std::string class_name;       ///< is_title: what its voxels are labelled
+  std::string file;             ///< its file's name in the asset folder
+  double unit = 1.0;            ///< metres per unit of the file
   std::int64_t gltf_bytes = 0;  ///< of STATE/assets/gltf/NAME.glb, in metres, axes of the file; 0: none yet
   bool operator==(const Asset&) const = default;
 };
 
-/// Puts a model into the map, its voxels, surface and inside, pinned occupied and labelled, as one thing; moves that, or
-/// takes it out again.
+/// Puts a model into the map, its voxels, surface and inside, pinned occupied and labelled, as one thing; moves that,
+/// or takes it out again.
 struct AssetRequest {
   enum class Op {
     kInject,
@@ -30,8 +30,8 @@ struct AssetRequest {
   std::string id;  ///< at most kMostAssetId bytes
   std::string author;
   Op op = Op::kInject;
-  std::string asset;  ///< its name; with kInject
-  std::string of;     ///< the request that injected it; not with kInject
+  std::string asset;                              ///< its name; with kInject
+  std::string of;                                 ///< the request that injected it; not with kInject
   Transform T_map_asset = Transform::Identity();  ///< of the file's own axes
   std::int64_t utime = 0;
 };
