@@ -120,7 +120,7 @@ Result<std::vector<FoundModel>> find_model(const TriangleMesh& mesh, double scal
   if (ballot.cells() > kMaxFindCells)
     return refuse(Code::kTooLarge, "the map is too wide to be searched; search an agent's part of it");
   const auto voxels = furniture.voxels();
-  const auto voters = spread(*p_model, kVoters);
+  const auto voters = spread(*p_model, kVoters), few = spread(*p_model, kFitPoints);
   std::vector<Candidate> candidates;
   const auto turned = [&](int yaw) {
     return Transform(Eigen::AngleAxisd(2 * M_PI * yaw / kYaws, Eigen::Vector3d::UnitZ()) * upright(options.up));
@@ -143,7 +143,7 @@ Result<std::vector<FoundModel>> find_model(const TriangleMesh& mesh, double scal
   for (const Candidate& one : elected(std::move(candidates))) {
     Transform T = turned(one.yaw);
     T.pretranslate(centre_of(one.at, resolution));
-    const FoundModel model = judged(*p_model, map, resolution, fit_object(*p_model, occupied, resolution, T));
+    const FoundModel model = judged(few, map, resolution, fit_object(few, occupied, resolution, T, kNear));
     if (model.score >= options.min_score) found.push_back(model);
   }
   std::ranges::stable_sort(

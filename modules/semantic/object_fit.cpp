@@ -125,15 +125,15 @@ Result<std::vector<Eigen::Vector3d>> surface_points(const TriangleMesh& mesh, do
 }
 
 ObjectFit fit_object(const std::vector<Eigen::Vector3d>& p_model, const BrickMasks& occupied, double resolution,
-                     const Transform& T_map_model) {
+                     const Transform& T_map_model, double reach) {
   Eigen::AlignedBox3d box;
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& p : p_model) box.extend(T_map_model * p), middle += p;
   middle /= static_cast<double>(p_model.size());
-  const Near near(occupied, resolution, box, 2 * kFarthestFit);
+  const Near near(occupied, resolution, box, 2 * reach);
   const ObjectFit before = judged(p_model, near, T_map_model);
   Transform T = T_map_model;
-  const double farthest = kFarthestFit / resolution;
+  const double farthest = reach / resolution;
   for (int i = 0; i < kFitSteps; ++i) {
     const auto next = step(p_model, near, T, std::max(kMatched, farthest * std::pow(0.8, i)));
     if (!next) return before;

@@ -28,10 +28,11 @@ inline constexpr double kMostTurned = 0.6;   ///< radians
 inline constexpr std::size_t kMaxFitPoints = 4000;
 
 /// Lays a model onto what is occupied near it: ICP, point to point, from the surface to the nearest occupied voxel's
-/// centre; what it reaches for shrinks from kFarthestFit to a voxel and a half within kFitSteps steps. Where it would
-/// leave the bounds above, or fit worse than before, it stays where it was said to be. @pre points are not empty.
+/// centre; what it reaches for shrinks from `reach` metres to a voxel and a half within kFitSteps steps. It comes to
+/// lie right to a voxel and a half. Where it would leave the bounds above, or fit worse than before, it stays where it
+/// was said to be. @pre points are not empty.
 [[nodiscard]] ObjectFit fit_object(const std::vector<Eigen::Vector3d>& p_model, const BrickMasks& occupied,
-                                   double resolution, const Transform& T_map_model);
+                                   double resolution, const Transform& T_map_model, double reach = kFarthestFit);
 inline constexpr int kFitSteps = 30;
 
 }  // namespace concord

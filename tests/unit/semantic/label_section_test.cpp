@@ -21,7 +21,7 @@ std::vector<LabelCorrection> of_each_kind() {
   T.linear() = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitY()).toRotationMatrix();
   T.translation() = Eigen::Vector3d(0.1, 1.0 / 3, -2);
   return {correction(1, Claim{{1, 1}, "chair", {{-3, 0, 2}, {-2, 0, 2}}, "", {"robot1", "odom", T}}),
-          correction(2, Claim{{2, 1}, "Tür", {{5, 5, 5}}, "asset-x", {}}),
+          correction(2, Claim{{2, 1}, "Tür", {{5, 5, 5}}, "asset-x", {}, {"pallet", T, ""}}),
           correction(4, Claim{{1, 2}, "", {{7, 7, 7}}, "", {}}),
           correction(5, LabelCorrection::Rename{1, "stool"}),
           correction(6, LabelCorrection::Reassign{{1, 2}, {2, 2}}),
@@ -73,7 +73,7 @@ TEST(LabelSection, RefusesWhatNobodyCouldHaveSaved) {
   const auto refuses = [](std::size_t at, Labels::What what) -> std::optional<Code> {
     auto all = of_each_kind();
     all[at].what = std::move(what);
-    all.resize(at + 1);
+    all.erase(all.begin() + static_cast<std::ptrdiff_t>(at) + 1, all.end());
     const auto read = read_label_section(section_of(all));
     return read ? std::nullopt : std::optional(read.error().code);
   };

@@ -249,7 +249,7 @@ RC_GTEST_PROP(LabelsProperty, AnyHistoryIsItsFold, ()) {
     }
   }
   const auto truth = oracle(world.corrections);
-  Labels again;
+  Labels again{0.1};
   BrickSet touched;
   for (const LabelCorrection& one : world.corrections) again.apply(one, touched);
   for (std::int32_t x = -1; x < 34; ++x) {
