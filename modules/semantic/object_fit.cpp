@@ -87,6 +87,12 @@ ObjectFit judged(const std::vector<Eigen::Vector3d>& p_model, const Near& near, 
   return fit;
 }
 
+/// Mean squared distance, voxels, of what lies farther than kMatched as if it lay there: within that, nearer is better.
+double cost(const ObjectFit& fit, double resolution) {
+  const double voxels = fit.rms / resolution;
+  return fit.matched * voxels * voxels + (1 - fit.matched) * kMatched * kMatched;
+}
+
 /// One step; nothing if hardly anything is near.
 std::optional<Transform> step(const std::vector<Eigen::Vector3d>& p_model, const Near& near, const Transform& T,
                               double reach) {
@@ -143,7 +149,7 @@ ObjectFit fit_object(const std::vector<Eigen::Vector3d>& p_model, const BrickMas
   fit.shift = (T * middle - T_map_model * middle).norm();
   fit.turn = Eigen::AngleAxisd(T_map_model.linear().transpose() * T.linear()).angle();
   const bool is_bounded = fit.shift <= kFarthestFit && fit.turn <= kMostTurned;
-  return is_bounded && fit.matched > before.matched ? fit : before;
+  return is_bounded && cost(fit, resolution) < cost(before, resolution) ? fit : before;
 }
 
 }  // namespace concord
