@@ -21,7 +21,7 @@ namespace {
 struct Options {
   std::string map, model, agent, up;
   std::vector<std::string> assets;
-  double scale = 1.0, min_score = 0.7;
+  double scale = 1.0, min_score = 0.75;
 };
 
 /// A glTF is y up, by its standard; all others are taken to be z up.

@@ -83,20 +83,28 @@ std::vector<Candidate> elected(std::vector<Candidate> all) {
   return out;
 }
 
+/// Of the model's surface, what lies in an occupied voxel or at the face of one, and what lies amidst free ones. Nearer
+/// than a fit asks for: a box is within a voxel and a half of many things.
 FoundModel judged(const std::vector<Eigen::Vector3d>& p_model, const BrickMap& map, double resolution,
-                  const ObjectFit& fit) {
-  FoundModel out{fit.T_map_model, 0, fit.matched, 0};
-  std::size_t free = 0;
+                  const Transform& T) {
+  std::size_t matched = 0, free = 0;
   for (const Eigen::Vector3d& p : p_model) {
-    const VoxelIndex v = voxel_of(fit.T_map_model * p, resolution);
-    bool is_free = in_bounds(v);
-    for (int i = 0; i < 27 && is_free; ++i) {
-      const VoxelIndex beside{v.x + i % 3 - 1, v.y + i / 3 % 3 - 1, v.z + i / 9 - 1};
-      is_free = in_bounds(beside) && concord::is_free(map.at(beside));
+    const VoxelIndex v = voxel_of(T * p, resolution);
+    bool is_matched = false, is_amidst_free = true;
+    for (int i = 0; i < 27; ++i) {
+      const VoxelIndex d{i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1}, beside{v.x + d.x, v.y + d.y, v.z + d.z};
+      const LogOdds value = in_bounds(beside) ? map.at(beside) : kUnknown;
+      is_amidst_free = is_amidst_free && is_free(value);
+      const bool is_at_face = std::abs(d.x) + std::abs(d.y) + std::abs(d.z) <= 1;
+      is_matched = is_matched || (is_at_face && is_known(value) && is_occupied(value));
     }
-    if (is_free) ++free;
+    matched += is_matched ? 1 : 0;
+    free += is_amidst_free ? 1 : 0;
   }
-  out.free = static_cast<double>(free) / static_cast<double>(p_model.size());
+  const auto share = [&](std::size_t count) {
+    return static_cast<double>(count) / static_cast<double>(p_model.size());
+  };
+  FoundModel out{T, 0, share(matched), share(free)};
   const double seen = out.matched + out.free;
   if (seen > 0) out.score = out.matched / seen * std::min(1.0, out.matched / kEnoughSeen);
   return out;
@@ -143,7 +151,7 @@ Result<std::vector<FoundModel>> find_model(const TriangleMesh& mesh, double scal
   for (const Candidate& one : elected(std::move(candidates))) {
     Transform T = turned(one.yaw);
     T.pretranslate(centre_of(one.at, resolution));
-    const FoundModel model = judged(few, map, resolution, fit_object(few, occupied, resolution, T, kNear));
+    const FoundModel model = judged(few, map, resolution, fit_object(few, occupied, resolution, T, kNear).T_map_model);
     if (model.score >= options.min_score) found.push_back(model);
   }
   std::ranges::stable_sort(

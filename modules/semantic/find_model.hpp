@@ -13,13 +13,13 @@ struct FoundModel {
   Transform T_map_model = Transform::Identity();
   double score =
       0;  ///< 0 to 1: of its surface that the map speaks of, the share that is occupied; less if that is little
-  double matched = 0;  ///< see ObjectFit
+  double matched = 0;  ///< share of its surface in an occupied voxel or at the face of one
   double free = 0;     ///< share of its surface that lies amidst what was seen to be free
 };
 
 struct FindOptions {
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< of the model's own axes: it is sought upright
-  double min_score = 0.7;
+  double min_score = 0.75;
   int most = 20;
 };
 
@@ -40,6 +40,6 @@ inline constexpr std::size_t kCandidates = 120;
 inline constexpr std::int64_t kMaxFindCells = 150'000'000;
 inline constexpr double kNear = 0.2;  ///< metres: half of what one direction is from the next, at the end of a metre
 inline constexpr std::size_t kFitPoints = 500;
-inline constexpr double kEnoughSeen = 0.7;  ///< of the surface must be occupied for a full score
+inline constexpr double kEnoughSeen = 0.8;  ///< of the surface must be occupied for a full score
 
 }  // namespace concord

@@ -48,9 +48,9 @@ TEST(FindModel, FindsEachPumpWhereverItStandsAndNothingElse) {
   const Transform one = placed(-1.2, -1.4, 0.7), two = placed(1.3, -0.6, 3.9);
   const auto found = find_model(pump(), 1.0, room_with({{pump(), one}, {pump(), two}}), kResolution);
   ASSERT_TRUE(found) << found.error().message;
-  for (const FoundModel& one : *found) {
-    SCOPED_TRACE(::testing::Message() << one.T_map_model.translation().transpose() << " score " << one.score);
-    EXPECT_TRUE(apart(one, placed(-1.2, -1.4, 0)) < 0.1 || apart(one, placed(1.3, -0.6, 0)) < 0.1) << one.matched;
+  for (const FoundModel& model : *found) {
+    SCOPED_TRACE(::testing::Message() << model.T_map_model.translation().transpose() << " score " << model.score);
+    EXPECT_TRUE(apart(model, placed(-1.2, -1.4, 0)) < 0.1 || apart(model, placed(1.3, -0.6, 0)) < 0.1) << model.matched;
   }
   ASSERT_EQ(found->size(), 2U);
   for (const Transform& T : {one, two}) {
