@@ -1,11 +1,13 @@
 #include "align/align.hpp"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "align/gates.hpp"
 #include "align/hypotheses.hpp"
+#include "align/looseness.hpp"
 
 namespace concord {
 namespace {
@@ -14,26 +16,14 @@ constexpr std::size_t kJudgePieces = 20'000;
 constexpr std::size_t kRivalPieces = 6000;
 constexpr int kSettleRounds = 2;
 constexpr double kSettleStep = 0.2;  // metres: twice what the kernel of the finest level heeds
-/// Metres; the least is what would do harm.
-constexpr std::array<double, 8> kSlides{-0.3, 0.3, -0.6, 0.6, -1.0, 1.0, -2.0, 2.0};
+/// Square metres of walls that lie on walls, both ways: fewer, and a few percent against them are all that tells a room
+/// from its mirror image.
+constexpr double kRoomWalls = 300.0;
+constexpr double kMirrorAgainst = 0.004;           // of the walls: where less is, no mirror image lies better
+constexpr double kMirrorYaw = 5.0 * M_PI / 180.0;  // what walls along walls leave open
+constexpr double kMirrorReach = 6.0;               // metres: a part lies as far on the other side of its room
 
 bool has_map(const AlignMap& map) { return map.points.size() >= kMinSurfacePoints; }
-
-/// Slides the source along the ground from where it was found: a place that is as good says that nothing holds it.
-void probe_slides(const AlignMap& target, const AlignMap& source, int threads, Alignment& out) {
-  const auto at = [&](const Transform& T) { return support(target, source, T, kRivalPieces, threads); };
-  const Support good = at(out.T_target_source);
-  const Eigen::Vector2d weak = good.weak_direction();
-  for (const Eigen::Vector2d& axis : {weak, Eigen::Vector2d(-weak.y(), weak.x())}) {
-    for (const double step : kSlides) {
-      Transform T = out.T_target_source;
-      T.translation().head<2>() += step * axis;
-      if (!is_as_good(at(T), good)) continue;
-      out.loose.push_back(name_slide({axis.x(), axis.y(), 0.0}));
-      break;
-    }
-  }
-}
 
 /// Refinement may end beside the place: a wall that lies off by more than the kernel heeds pulls no longer. So where
 /// something speaks against a place its surroundings are tried, and what is better is gone on from.
@@ -66,9 +56,10 @@ GicpResult settle(const AlignMap& target, const AlignMap& source, GicpResult fin
   return fine;
 }
 
-void judge(const AlignMap& target, const AlignMap& source, const GicpResult& fine, Origin origin, int threads,
-           Alignment& out) {
+Support judge(const AlignMap& target, const AlignMap& source, const GicpResult& fine, Origin origin, int threads,
+              Alignment& out) {
   out.T_target_source = fine.T_target_source;
+  out.p_target_centre = fine.p_target_centre;
   out.rms = fine.rms;
   out.covariance = covariance(fine);
   out.iterations += fine.iterations;
@@ -77,95 +68,142 @@ void judge(const AlignMap& target, const AlignMap& source, const GicpResult& fin
   out.overlap_target = s.overlap_target();
   out.against_upright = s.upright().share_against();
   out.against_level = s.level().share_against();
-  const double all = s.upright().all + s.level().all;
-  out.free_space_violation = all > 0.0 ? (s.upright().contradicted + s.level().contradicted) / all : 0.0;
-  out.reason = check_gates(s, origin);
-  if (out.reason == AlignReason::kDegenerate) out.loose.push_back(name_slide(Eigen::Vector3d::UnitZ()));
-  if (!out.accepted()) return;
-  probe_slides(target, source, threads, out);
+  const Verdicts all = s.all();
+  out.free_space_violation = all.all > 0.0 ? all.contradicted / all.all : 0.0;
+  GateAnswer gates = check_gates(s, origin);
+  out.reason = gates.reason;
+  out.message = std::move(gates.message);
+  return s;
+}
+
+/// What is asked only of a place that passed the gates.
+void check_hold(const AlignMap& target, const AlignMap& source, bool converged, int threads, Alignment& out) {
+  out.loose = loose_directions(target, source, out.T_target_source, threads);
   if (!out.loose.empty()) {
+    std::string loose;
+    for (const std::string& direction : out.loose) loose += (loose.empty() ? "" : ", ") + direction;
     out.reason = AlignReason::kDegenerate;
-  } else if (!fine.converged) {
+    out.message = "what both have seen leaves it open: " + loose + "; map something that holds it";
+  } else if (!converged) {
     out.reason = AlignReason::kDiverged;
+    out.message = "refinement came to no end; give a better guess";
   }
 }
 
-/// Another place that explains the two as well. What refines to the answer is none: it was on its way there.
-void find_rival(const AlignMap& target, const AlignMap& source, const std::vector<Hypothesis>& hypotheses, int threads,
-                Alignment& out) {
+/// Other places that explain the two as well. What refines to the answer is none: it was on its way there.
+void find_rivals(const AlignMap& target, const AlignMap& source, const std::vector<Hypothesis>& hypotheses,
+                 const Support& accepted, int threads, Alignment& out) {
   const Eigen::Vector3d p_source = middle_of(source);
   for (const Hypothesis& h : hypotheses) {
-    if (!are_apart(h.T_target_source, out.T_target_source, p_source) || !is_plausible(h.support)) continue;
+    if (!are_apart(h.T_target_source, out.T_target_source, p_source) || !may_rival(h.support)) continue;
     const GicpResult rival = refine_fully(target, source, h.T_target_source, threads);
     out.iterations += rival.iterations;
-    if (!are_apart(rival.T_target_source, out.T_target_source, p_source)) continue;
-    out.reason = AlignReason::kAmbiguous;
+    const auto is_same = [&](const Transform& T) { return !are_apart(rival.T_target_source, T, p_source); };
+    if (is_same(out.T_target_source)) continue;
+    if (!is_rival(support(target, source, rival.T_target_source, kRivalPieces, threads), accepted)) continue;
+    auto& rivals = out.T_target_source_rivals;
+    if (std::none_of(rivals.begin(), rivals.end(), is_same)) rivals.push_back(rival.T_target_source);
+  }
+  if (out.T_target_source_rivals.empty()) return;
+  out.reason = AlignReason::kAmbiguous;
+  out.message = std::to_string(out.T_target_source_rivals.size() + 1) +
+                " places explain the maps; give a guess near the right one, or map what sets them apart";
+}
+
+/// The source's mirror image, put where its walls face as the source's do where it lies: mirrored in an upright plane
+/// through its middle along its walls, or across them, and for square rooms turned by a quarter.
+std::vector<Transform> mirrored_on_the_spot(const AlignMap& source, const Transform& T_target_source,
+                                            const Eigen::Vector2d& facing) {
+  const Eigen::Vector3d n(facing.x(), facing.y(), 0.0);
+  const Eigen::Matrix3d in_target = Eigen::Matrix3d::Identity() - 2.0 * n * n.transpose();
+  const Eigen::Matrix3d in_source = Eigen::Vector3d(-1.0, 1.0, 1.0).asDiagonal();
+  const Eigen::Vector3d p_target = T_target_source * middle_of(source);
+  std::vector<Transform> out;
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    const Eigen::AngleAxisd turn(0.5 * M_PI * quarter, Eigen::Vector3d::UnitZ());
+    Transform T = Transform::Identity();
+    T.linear() = turn.toRotationMatrix() * in_target * T_target_source.linear() * in_source;
+    T.translation() = p_target - T.linear() * in_source * middle_of(source);
+    out.push_back(T);
+  }
+  return out;
+}
+
+/// A room of the same plan, or a map with its left and right exchanged, lies on the walls as well; but something is
+/// against it, and its mirror image lies better.
+void try_mirrored(const AlignMap& target, const AlignMap& source, const Support& accepted, int threads,
+                  Alignment& out) {
+  if (accepted.upright().matched > kRoomWalls || out.against_upright < kMirrorAgainst) return;
+  const AlignMap image = mirrored(source, threads);
+  for (const Transform& T : mirrored_on_the_spot(source, out.T_target_source, accepted.weak_direction())) {
+    const auto hypotheses = find_hypotheses(target, image, Vicinity{T, kMirrorYaw, kMirrorReach}, threads);
+    if (hypotheses.empty() || !may_rival(hypotheses.front().support)) continue;
+    const GicpResult fine = refine_fully(target, image, hypotheses.front().T_target_source, threads);
+    out.iterations += fine.iterations;
+    if (!is_better_mirrored(support(target, image, fine.T_target_source, kJudgePieces, threads), accepted)) continue;
+    out.reason = AlignReason::kDiverged;
+    out.message =
+        "the source's mirror image lies better in the target than the source does: is it another room of the "
+        "same plan, or a map with left and right exchanged?";
     return;
   }
 }
 
-std::string words(const Alignment& a) {
-  const auto percent = [](double share) { return std::to_string(std::lround(100.0 * share)) + " %"; };
-  std::string loose;
-  for (const std::string& direction : a.loose) loose += (loose.empty() ? "" : ", ") + direction;
-  switch (a.reason) {
-    case AlignReason::kAccepted:
-      return "aligned: " + percent(a.overlap()) + " overlap, " + std::to_string(std::lround(1000.0 * a.rms)) +
-             " mm rms";
-    case AlignReason::kNoMap: return "there is no map to align yet; let both explore first";
-    case AlignReason::kLowOverlap:
-      return "only " + percent(a.overlap()) + " of either map lies on the other; map more of what both have seen" +
-             std::string(", or give a guess");
-    case AlignReason::kDiverged:
-      return "the maps contradict each other there (" + percent(a.against_upright) + " of the walls, " +
-             percent(a.against_level) + " of the floors and ceilings); give a better guess, or map the place anew";
-    case AlignReason::kDegenerate:
-      return "the walls that both have seen leave it open: " + loose + "; map something that faces that way";
-    case AlignReason::kAmbiguous:
-      return "another place explains the maps as well; give a guess, or map more of what sets the places apart";
-  }
-  return {};
-}
-
-Alignment worded(Alignment alignment) {
-  alignment.message = words(alignment);
-  return alignment;
-}
-
-Alignment find(const AlignMap& target, const AlignMap& source, const std::optional<Transform>& guess, int threads) {
+Alignment no_map() {
   Alignment out;
-  if (!has_map(target) || !has_map(source)) return out;
-  const std::vector<Hypothesis> hypotheses = find_hypotheses(target, source, guess, threads);
-  out.hypotheses = static_cast<int>(hypotheses.size());
-  for (const Hypothesis& h : hypotheses) out.iterations += h.iterations;
-  if (hypotheses.empty()) {
-    out.reason = AlignReason::kLowOverlap;
-    return out;
-  }
-  const Origin origin = guess ? Origin::kGuess : Origin::kAnywhere;
-  const GicpResult fine = refine_fully(target, source, hypotheses.front().T_target_source, threads);
-  judge(target, source, fine, origin, threads, out);
-  if (out.reason == AlignReason::kDiverged) {
-    out.iterations -= fine.iterations;
-    judge(target, source, settle(target, source, fine, threads), origin, threads, out);
-  }
+  out.message = "there is no map to align yet; let both explore first";
+  return out;
+}
+
+Alignment worded(Alignment out) {
   if (!out.accepted()) return out;
-  find_rival(target, source, hypotheses, threads, out);
+  char text[64];
+  std::snprintf(text, sizeof text, "aligned: %.0f %% overlap, %.0f mm rms", 100.0 * out.overlap(), 1000.0 * out.rms);
+  out.message = text;
   return out;
 }
 
 }  // namespace
 
 Alignment align(const AlignMap& target, const AlignMap& source, const std::optional<Transform>& guess, int threads) {
-  return worded(find(target, source, guess, threads));
+  Alignment out;
+  if (!has_map(target) || !has_map(source)) return no_map();
+  std::optional<Vicinity> vicinity;
+  if (guess) vicinity = around_guess(*guess);
+  const std::vector<Hypothesis> hypotheses = find_hypotheses(target, source, vicinity, threads);
+  out.hypotheses = static_cast<int>(hypotheses.size());
+  for (const Hypothesis& h : hypotheses) out.iterations += h.iterations;
+  if (hypotheses.empty()) {
+    out.reason = AlignReason::kLowOverlap;
+    out.message = guess ? "the two share no place near the guess" : "no place was found where one lies on the other";
+    return out;
+  }
+  const Origin origin = guess ? Origin::kGuess : Origin::kAnywhere;
+  GicpResult fine = refine_fully(target, source, hypotheses.front().T_target_source, threads);
+  Support found = judge(target, source, fine, origin, threads, out);
+  if (out.reason == AlignReason::kDiverged) {
+    out.iterations -= fine.iterations;
+    fine = settle(target, source, fine, threads);
+    found = judge(target, source, fine, origin, threads, out);
+  }
+  if (out.accepted()) check_hold(target, source, fine.converged, threads, out);
+  if (out.accepted() && vicinity && !is_in(*vicinity, out.T_target_source, middle_of(source))) {
+    out.reason = AlignReason::kLowOverlap;
+    out.message = "what was found lies farther from the guess than 2 m and 45 degrees; give a better guess, or none";
+  }
+  if (out.accepted()) find_rivals(target, source, hypotheses, found, threads, out);
+  if (out.accepted()) try_mirrored(target, source, found, threads, out);
+  return worded(std::move(out));
 }
 
 Alignment recheck(const AlignMap& target, const AlignMap& source, const Transform& T_target_source, int threads) {
   Alignment out;
-  if (!has_map(target) || !has_map(source)) return worded(out);
+  if (!has_map(target) || !has_map(source)) return no_map();
   out.hypotheses = 1;
-  judge(target, source, refine_finely(target, source, T_target_source, threads), Origin::kGuess, threads, out);
-  return worded(out);
+  const GicpResult fine = refine_finely(target, source, T_target_source, threads);
+  judge(target, source, fine, Origin::kGuess, threads, out);
+  if (out.accepted()) check_hold(target, source, fine.converged, threads, out);
+  return worded(std::move(out));
 }
 
 }  // namespace concord

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 namespace concord {
 namespace {
@@ -20,21 +21,17 @@ bool has_frame(const AgentLayers& layers, const AlignResult::Used& used) {
   return it != layers.end() && it->second.frame_id == used.frame_id;
 }
 
-bool lies_at(const AgentLayers& layers, const std::string& agent, const Transform& T_map_agent) {
-  const auto it = layers.find(agent);
-  return it != layers.end() && it->second.T_map_agent && it->second.T_map_agent->isApprox(T_map_agent, 1e-9);
-}
-
 tl::unexpected<Error> expired(const std::string& id) {
   return refuse(Code::kExpired, "nothing is kept of alignment " + id + "; ask for it again");
 }
 
-std::vector<std::pair<std::string, Transform>> places_in(const AlignTask& task) {
-  std::vector<std::pair<std::string, Transform>> places;
-  if (!task.target_agent.empty()) return places;
-  for (const AlignTask::Part& part : task.target) places.emplace_back(part.agent, part.T_target_part);
-  return places;
+void agree(AlignDesk::Case& one) {
+  one.accepted = true;
+  one.result.open = false;
 }
+
+/// Said by the watch, until somebody has put it right.
+bool is_standing_offer(const AlignDesk::Case& one) { return one.is_offer && !one.accepted; }
 
 }  // namespace
 
@@ -65,7 +62,7 @@ std::size_t AlignDesk::waiting() const {
 }
 
 std::size_t AlignDesk::offers() const {
-  return static_cast<std::size_t>(std::ranges::count_if(cases_, &Case::is_offer));
+  return static_cast<std::size_t>(std::ranges::count_if(cases_, is_standing_offer));
 }
 
 Result<void> AlignDesk::take(AlignRequest request, std::uint64_t content) {
@@ -92,7 +89,7 @@ const AlignResult* AlignDesk::finish(const AlignTask& task, AlignResult result) 
   Case* one = find(task.id);
   if (one == nullptr || one->state != State::kRunning) return nullptr;
   one->state = State::kDone;
-  one->placed = places_in(task);
+  one->places = places_of(task);
   one->result = std::move(result);
   one->result.id = one->request.id;
   one->result.author = one->request.author;
@@ -102,14 +99,16 @@ const AlignResult* AlignDesk::finish(const AlignTask& task, AlignResult result) 
   return one != nullptr ? &one->result : nullptr;
 }
 
-void AlignDesk::give_up(const std::string& id) {
-  std::erase_if(cases_, [&](const Case& one) { return one.request.id == id; });
+bool AlignDesk::give_up(const std::string& id) {
+  return std::erase_if(cases_, [&](const Case& one) { return one.request.id == id && one.state == State::kRunning; }) >
+         0;
 }
 
-/// Those that wait are never among them: they are few.
+/// Of what people asked for. Those that wait are never among them, nor what the watch says: they are few.
 void AlignDesk::forget_the_oldest() {
-  while (cases_.size() - waiting() > kMaxKept) {
-    cases_.erase(std::ranges::find(cases_, State::kDone, &Case::state));
+  const auto may_go = [](const Case& one) { return one.state == State::kDone && !is_standing_offer(one); };
+  while (std::cmp_greater(std::ranges::count_if(cases_, may_go), kMaxKept)) {
+    cases_.erase(std::ranges::find_if(cases_, may_go));
   }
 }
 
@@ -119,21 +118,42 @@ const AlignResult& AlignDesk::offer(const AlignTask& task, AlignResult result) {
   one.request.id = result.id;
   one.request.source = task.used_source.agent;
   one.state = State::kDone;
-  one.placed = places_in(task);
+  one.places = places_of(task);
   one.is_offer = true;
   one.result = std::move(result);
   one.result.open = one.result.evidence.accepted();
   cases_.push_back(std::move(one));
-  forget_the_oldest();
   return cases_.back().result;
 }
 
 void AlignDesk::withdraw_offer(const std::string& agent) {
-  std::erase_if(cases_, [&](const Case& one) { return one.is_offer && !one.accepted && one.request.source == agent; });
+  std::erase_if(cases_, [&](const Case& one) { return is_standing_offer(one) && one.request.source == agent; });
 }
 
 bool AlignDesk::has_offer(const std::string& agent) const {
-  return std::ranges::any_of(cases_, [&](const Case& one) { return one.is_offer && one.request.source == agent; });
+  return std::ranges::any_of(cases_,
+                             [&](const Case& one) { return is_standing_offer(one) && one.request.source == agent; });
+}
+
+void AlignDesk::heed(const AgentLayers& layers) {
+  for (Case& one : cases_) {
+    if (!one.asked || one.accepted) continue;
+    if (lies_at({one.asked->agent, one.asked->frame_id, one.asked->T_map_agent}, layers)) agree(one);
+  }
+  forget_the_oldest();
+  std::erase_if(cases_, [&](const Case& one) {
+    return is_standing_offer(one) &&
+           !std::ranges::all_of(one.places, [&](const Place& place) { return lies_at(place, layers); });
+  });
+}
+
+std::vector<std::string> AlignDesk::expire_offers(std::int64_t now) {
+  std::vector<std::string> agents;
+  for (const Case& one : cases_) {
+    if (is_standing_offer(one) && now - one.result.utime > kOpenFor) agents.push_back(one.request.source);
+  }
+  for (const std::string& agent : agents) withdraw_offer(agent);
+  return agents;
 }
 
 /// Refused: the map has moved since (kStale), a frame of the target has ended (kBadFrame), it is in no map
@@ -141,9 +161,9 @@ bool AlignDesk::has_offer(const std::string& agent) const {
 Result<Transform> AlignDesk::T_map_target(const Case& found, const AgentLayers& layers) const {
   const std::string& target = found.result.target;
   if (target.empty()) {
-    for (const auto& [agent, T_map_agent] : found.placed) {
-      if (lies_at(layers, agent, T_map_agent)) continue;
-      return refuse(Code::kStale, agent + " lies elsewhere in the map since; align again");
+    for (const Place& place : found.places) {
+      if (lies_at(place, layers)) continue;
+      return refuse(Code::kStale, place.agent + " lies elsewhere in the map since; align again");
     }
     return Transform::Identity();
   }
@@ -155,14 +175,28 @@ Result<Transform> AlignDesk::T_map_target(const Case& found, const AgentLayers& 
   return refuse(Code::kNotAligned, target + " is in no map itself; align it to the map first");
 }
 
+/// One pair alone founds the map: two that lie in no map would each found it in a frame of its own.
+Result<AlignDesk::Acceptance> AlignDesk::found_map(const Case& found, const AlignDecision& decision, std::int64_t now) {
+  const AlignResult::Used& used = found.result.layers.front();
+  const bool is_founding = founding_ && now - founding_->utime <= kOpenFor && find(founding_->align_id) != nullptr;
+  if (is_founding && (founding_->asked.agent != used.agent || founding_->asked.frame_id != used.frame_id)) {
+    return refuse(Code::kBusy, founding_->asked.agent + " is about to found the map; ask again in a second");
+  }
+  founding_ = {found.request.id,
+               found.result.utime,
+               {founding_id(decision.id), decision.author, used.agent, used.frame_id, Transform::Identity()}};
+  return Acceptance{founding_->asked, true};
+}
+
 Result<AlignDesk::Acceptance> AlignDesk::accept(const AlignDecision& decision, const AgentLayers& layers,
-                                                std::int64_t now) {
+                                                bool is_founded, std::int64_t now) {
+  if (is_founded) founding_.reset();
   Case* found = find(decision.align_id);
   if (found == nullptr) return expired(decision.align_id);
   if (found->state != State::kDone) return refuse(Code::kBusy, "it is not found yet; ask again");
   if (found->accepted) {
-    if (found->accepted->id == decision.id) return Acceptance{*found->accepted, false};
-    return refuse(Code::kConflict, "it was accepted by " + found->accepted->author + " already");
+    if (found->asked->id == decision.id) return Acceptance{*found->asked, false};
+    return refuse(Code::kConflict, "it was accepted by " + found->asked->author + " already");
   }
   const AlignResult& result = found->result;
   if (!result.evidence.accepted()) {
@@ -174,42 +208,53 @@ Result<AlignDesk::Acceptance> AlignDesk::accept(const AlignDecision& decision, c
     return refuse(Code::kBadFrame, result.source.agent + " has begun another frame; align again");
   }
   const auto T_map_target = this->T_map_target(*found, layers);
-  const bool is_empty =
-      std::ranges::none_of(layers, [](const auto& entry) { return entry.second.T_map_agent.has_value(); });
-  if (!T_map_target && T_map_target.error().code == Code::kNotAligned && is_empty) {
-    const AlignResult::Used& used = result.layers.front();
-    return Acceptance{{founding_id(decision.id), decision.author, used.agent, used.frame_id, Transform::Identity()},
-                      true};
+  if (!T_map_target && T_map_target.error().code == Code::kNotAligned && !is_founded) {
+    return found_map(*found, decision, now);
   }
   if (!T_map_target) return tl::unexpected(T_map_target.error());
   const Transform T = *T_map_target * result.evidence.T_target_source;
   // As it comes from outside: a product drifts off a rotation, and people may be far away.
   const auto T_map_source = make_transform(T.translation(), Eigen::Quaterniond(T.linear()).coeffs());
   if (!T_map_source) return tl::unexpected(T_map_source.error());
-  found->accepted =
+  found->asked =
       TransformRequest{decision.id, decision.author, result.source.agent, result.source.frame_id, *T_map_source};
-  found->result.open = false;
-  return Acceptance{*found->accepted, false};
+  return Acceptance{*found->asked, false};
+}
+
+void AlignDesk::on_merge(const std::string& id, bool ok) {
+  if (!ok && founding_ && founding_->asked.id == id) founding_.reset();
+  for (Case& one : cases_) {
+    if (!one.asked || one.asked->id != id || one.accepted) continue;
+    ok ? agree(one) : one.asked.reset();
+  }
+  forget_the_oldest();
 }
 
 Result<void> AlignDesk::drop(const AlignDecision& decision) {
   const Case* found = find(decision.align_id);
   if (found == nullptr) return expired(decision.align_id);
   if (found->accepted) {
-    return refuse(Code::kConflict, "it was accepted; take it back with: concord undo " + found->accepted->id);
+    return refuse(Code::kConflict, "it was accepted; take it back with: concord undo " + found->asked->id);
   }
-  give_up(decision.align_id);
+  std::erase_if(cases_, [&](const Case& one) { return one.request.id == decision.align_id; });
   return {};
 }
 
-std::vector<const AlignResult*> AlignDesk::standing(std::int64_t now) {
+std::vector<const AlignResult*> AlignDesk::standing(const AgentLayers& layers, std::int64_t now) {
   std::vector<const AlignResult*> out;
   for (Case& one : cases_) {
     if (one.state != State::kDone || one.accepted) continue;
     if (now - one.result.utime > kOpenFor) one.result.open = false;
-    if (one.result.open || one.is_offer) out.push_back(&one.result);
+    if (one.is_offer || (one.result.open && may_hold(one, layers))) out.push_back(&one.result);
   }
   return out;
+}
+
+/// Unless it is said no to for good: the frames are those that it was found in, and the map has not moved since.
+bool AlignDesk::may_hold(const Case& found, const AgentLayers& layers) const {
+  if (!has_frame(layers, found.result.source)) return false;
+  const auto T = T_map_target(found, layers);
+  return T || T.error().code == Code::kNotAligned;
 }
 
 }  // namespace concord

@@ -4,7 +4,6 @@
 #include <deque>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "align/align_task.hpp"
@@ -27,9 +26,9 @@ class AlignDesk {
     std::uint64_t content = 0;
     State state = State::kWaiting;
     AlignResult result;
-    /// Where those lay that made up the map; empty: the target is an agent.
-    std::vector<std::pair<std::string, Transform>> placed;
-    std::optional<TransformRequest> accepted;
+    std::vector<Place> places;              ///< that it was found from; empty: the target is an agent
+    std::optional<TransformRequest> asked;  ///< of merge, by the last decision
+    bool accepted = false;                  ///< merge did what was asked
     bool is_offer = false;
   };
 
@@ -44,38 +43,57 @@ class AlignDesk {
   [[nodiscard]] const AlignRequest* begin_next();
   /// What came of the one that runs. Null: it was dropped meanwhile.
   const AlignResult* finish(const AlignTask& task, AlignResult result);
-  /// The one that runs cannot be carried out, and is forgotten.
-  void give_up(const std::string& id);
+  /// The one that runs cannot be carried out, and is forgotten. False: it was dropped meanwhile.
+  bool give_up(const std::string& id);
 
   /// The watch found that an agent slipped, or contradicts the others: takes the place of what it said before.
   const AlignResult& offer(const AlignTask& task, AlignResult result);
-  /// The agent lies right, or is no longer there.
+  /// The agent lies right.
   void withdraw_offer(const std::string& agent);
+  /// Withdraws what is said of agents that lie elsewhere now, or among others that do; and takes what shows in the map
+  /// for accepted, though merge's answer was lost.
+  void heed(const AgentLayers& layers);
+  /// Withdraws what has been said for too long. @return of which agents.
+  std::vector<std::string> expire_offers(std::int64_t now);
   [[nodiscard]] bool has_offer(const std::string& agent) const;
 
   /// Where accepting places an agent: the source or, where nobody is in the map yet, first the target that founds it;
-  /// `is_founding` says which. Asked again by the same decision it is the same.
+  /// `is_founding` says which. Asked again by the same decision it is the same; it is accepted once merge has agreed,
+  /// until then another decision takes its place. `is_founded`: somebody is in the map.
   /// Refused: nothing of that id is kept, or it is too old (kExpired); it waits or runs (kBusy); it was refused
   /// (kBadRequest) or accepted by another decision (kConflict); a frame has ended (kBadFrame); the map has moved since
-  /// (kStale); the target is in no map (kNotAligned).
+  /// (kStale); the target is in no map (kNotAligned), or another one is about to found it (kBusy).
   struct Acceptance {
     TransformRequest request;
     bool is_founding = false;
   };
-  [[nodiscard]] Result<Acceptance> accept(const AlignDecision& decision, const AgentLayers& layers, std::int64_t now);
+  [[nodiscard]] Result<Acceptance> accept(const AlignDecision& decision, const AgentLayers& layers, bool is_founded,
+                                          std::int64_t now);
+  /// What merge said to what it was asked by this id.
+  void on_merge(const std::string& id, bool ok);
   /// Refused (kExpired): nothing of that id is kept; (kConflict): it was accepted.
   [[nodiscard]] Result<void> drop(const AlignDecision& decision);
 
   /// What people should know now: what can be accepted, and what the watch says. The oldest first.
-  [[nodiscard]] std::vector<const AlignResult*> standing(std::int64_t now);
+  [[nodiscard]] std::vector<const AlignResult*> standing(const AgentLayers& layers, std::int64_t now);
   [[nodiscard]] std::size_t waiting() const;
   [[nodiscard]] std::size_t offers() const;
 
  private:
   [[nodiscard]] Case* find(const std::string& id);
   [[nodiscard]] Result<Transform> T_map_target(const Case& found, const AgentLayers& layers) const;
+  [[nodiscard]] bool may_hold(const Case& found, const AgentLayers& layers) const;
+  [[nodiscard]] Result<Acceptance> found_map(const Case& found, const AlignDecision& decision, std::int64_t now);
   void forget_the_oldest();
 
+  /// Who was to found the map, by accepting what.
+  struct Founding {
+    std::string align_id;
+    std::int64_t utime = 0;  ///< when that was found
+    TransformRequest asked;
+  };
+
+  std::optional<Founding> founding_;
   std::deque<Case> cases_;  ///< in the order in which they were asked
 };
 

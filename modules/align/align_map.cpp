@@ -21,6 +21,9 @@ constexpr double kMinFreeShare = 0.2;
 
 Result<AlignMap> make(Result<SurfacePoints> points, double resolution, int threads) {
   if (!points) return tl::unexpected(points.error());
+  if (are_scattered(*points, resolution)) {
+    return refuse(Code::kTooLarge, "the surface is scattered over too much space; align a coarser copy of the map");
+  }
   AlignMap out;
   out.resolution = resolution;
   out.points = without_loners(std::move(*points), resolution, threads);
@@ -102,6 +105,19 @@ Result<AlignMap> make_align_map(std::span<const Eigen::Vector3f> cloud, double r
   if (!out) return out;
   out->free = FreeSpace::implied(out->fine(), threads);
   orient(*out);
+  return out;
+}
+
+AlignMap mirrored(const AlignMap& map, int threads) {
+  const Eigen::Vector3d mirror(-1.0, 1.0, 1.0);
+  AlignMap out;
+  out.resolution = map.resolution;
+  out.points = map.points;
+  for (Eigen::Vector3f& p : out.points) p.x() = -p.x();
+  out.levels = make_levels(out.points, map.resolution, threads);
+  out.free = map.free.mirrored();
+  out.R_upright_map = mirror.asDiagonal() * map.R_upright_map * mirror.asDiagonal();
+  orient(out);
   return out;
 }
 

@@ -28,15 +28,18 @@ struct AlignMap {
 /// Finest first, as AlignMap has them. @pre a resolution that make_align_map takes.
 [[nodiscard]] std::vector<SurfaceLevel> make_levels(const SurfacePoints& points, double resolution, int threads);
 
-/// Refused: see surface_points.
+/// Refused: see surface_points and are_scattered (kTooLarge).
 [[nodiscard]] Result<AlignMap> make_align_map(const BrickMap& map, double resolution, int threads);
-/// A cloud; `resolution` is about the distance between its points. Refused: see surface_points; a resolution below
+/// A cloud; `resolution` is about the distance between its points. Refused: as above; a resolution below
 /// kMinAlignResolution (kBadResolution).
 [[nodiscard]] Result<AlignMap> make_align_map(std::span<const Eigen::Vector3f> cloud, double resolution, int threads);
 
+/// The map as a mirror in the plane x = 0 shows it.
+[[nodiscard]] AlignMap mirrored(const AlignMap& map, int threads);
+
 /// The direction that is up by the surface itself, to correct a gravity that is off by a few degrees: floors and
 /// ceilings are level, walls are plumb, by total least squares under a shrinking gate. The identity where there is too
-/// little to tell by, or where it would turn by more than 6 degrees.
+/// little to tell by, or where it would turn by more than 4.5 degrees.
 [[nodiscard]] Eigen::Matrix3d upright(const SurfaceLevel& surface);
 
 }  // namespace concord

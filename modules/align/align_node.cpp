@@ -1,7 +1,9 @@
 #include "align/align_node.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <new>
 #include <thread>
 #include <utility>
 
@@ -17,6 +19,7 @@ constexpr std::int64_t kRepeatPeriod = 1'000'000;
 const std::string kRequests = "in/align";
 const std::string kDecisions = "in/align_decision";
 const std::string kResults = "out/align";
+const std::string kMerge = "merge";
 
 int all_threads() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
 
@@ -28,6 +31,19 @@ std::uint64_t content_without_time(AlignRequest request) {
 
 std::string centimetres(double metres) { return std::to_string(std::lround(100.0 * metres)) + " cm"; }
 
+/// What computing throws is an answer like any other, or whoever asked would wait for ever: mostly there is not enough
+/// memory.
+template <class Make>
+auto guarded(const Make& make) -> decltype(make()) {
+  try {
+    return make();
+  } catch (const std::bad_alloc&) {
+    return refuse(Code::kTooLarge, "there is not enough memory to align these; align coarser copies of the maps");
+  } catch (const std::exception& e) {
+    return refuse(Code::kBadRequest, std::string("alignment failed: ") + e.what());
+  }
+}
+
 /// What people are told of an agent that slipped.
 std::string words_of_slip(const AlignResult& result) {
   return result.source.agent + " has slipped by " + centimetres(result.slip) + " and " +
@@ -35,11 +51,19 @@ std::string words_of_slip(const AlignResult& result) {
          " degrees against the others; accept " + result.id + " to put it right";
 }
 
+/// And of one that lies wrong, nobody knows how.
+std::string words_of_contradiction(const AlignResult& result) {
+  return result.source.agent + " and the others contradict each other where it lies, in " +
+         std::to_string(std::lround(100.0 * result.evidence.against_upright)) +
+         " % of the walls: it has slipped, or something large was moved; align it again, or map the place anew";
+}
+
 }  // namespace
 
-AlignNode::AlignNode(const NodeContext& context, std::launch how)
+AlignNode::AlignNode(const NodeContext& context, std::launch how, Compute compute)
     : context_(context),
       how_(how),
+      compute_(std::move(compute)),
       site_{context.site.resolution, context.site.merge.policy},
       replies_(context),
       layers_(context) {
@@ -47,11 +71,26 @@ AlignNode::AlignNode(const NodeContext& context, std::launch how)
                        [this](const std::string&, AlignRequest request) { on_request(std::move(request)); });
   listen<AlignDecision>(context_.bus, context_.counters, context_.process, kDecisions,
                         [this](const std::string&, const AlignDecision& decision) { on_decision(decision); });
+  listen<Answer>(context_.bus, context_.counters, context_.process, kAnswers,
+                 [this](const std::string&, const Answer& answer) {
+                   if (answer.process != kMerge || answer.code == name(Code::kBusy)) return;
+                   desk_.on_merge(answer.id, answer.ok);
+                 });
   context_.bus.every(kLookPeriod, [this] { go_on(); });
-  context_.bus.every(kRepeatPeriod, [this] {
-    for (const AlignResult* result : desk_.standing(context_.bus.now())) say(*result);
-    count();
-  });
+  context_.bus.every(kRepeatPeriod, [this] { repeat(); });
+}
+
+AlignNode::~AlignNode() {
+  if (running_) running_->stop.request_stop();
+}
+
+void AlignNode::repeat() {
+  const std::int64_t now = context_.bus.now();
+  const AgentLayers& layers = layers_.now();
+  desk_.heed(layers);
+  for (const std::string& agent : desk_.expire_offers(now)) watch_.forget(agent);
+  for (const AlignResult* result : desk_.standing(layers, now)) say(*result);
+  count();
 }
 
 void AlignNode::on_request(AlignRequest request) {
@@ -92,9 +131,15 @@ void AlignNode::on_decision(const AlignDecision& decision) {
   if (decision.op == AlignDecision::Op::kDrop) {
     const auto dropped = desk_.drop(decision);
     if (!dropped) return replies_.deny(kDecisions, decision.id, dropped.error());
+    if (running_ && running_->task->id == decision.align_id) running_->stop.request_stop();
     return replies_.grant(decision.id, 0, 1, decision.align_id + " is dropped");
   }
-  const auto accepted = desk_.accept(decision, layers_.now(), context_.bus.now());
+  const auto is_founded = layers_.map_is_founded();
+  if (!is_founded) {
+    const Error unknown{Code::kBusy, "merge has not said yet who is in the map; ask again in a second"};
+    return replies_.deny(kDecisions, decision.id, unknown);
+  }
+  const auto accepted = desk_.accept(decision, layers_.now(), *is_founded, context_.bus.now());
   if (!accepted) return replies_.deny(kDecisions, decision.id, accepted.error());
   // Merge answers by the decision's own id, to who decided; asked again it answers again.
   context_.bus.publish("in/transform", encode(accepted->request, context_.bus.now()));
@@ -108,17 +153,21 @@ void AlignNode::go_on() {
   if (running_) {
     if (running_->found.wait_for(std::chrono::seconds(0)) == std::future_status::timeout) return;
     Running done = *std::exchange(running_, std::nullopt);
-    const Found found = done.found.get();
-    done.task->is_recheck ? finish_watch(*done.task, found) : finish(*done.task, found);
+    end(*done.task, std::move(done.look), done.found.get());
   }
   begin();
   if (!running_) begin_watch();
 }
 
 void AlignNode::begin() {
-  while (const AlignRequest* request = desk_.begin_next()) {
-    auto task = make_task(*request, layers_.now(), site_);
-    if (task) return start(std::move(*task));
+  while (!running_) {
+    const AlignRequest* request = desk_.begin_next();
+    if (request == nullptr) return;
+    auto task = guarded([&] { return make_task(*request, layers_.now(), site_); });
+    if (task) {
+      start(std::move(*task), std::nullopt);
+      continue;
+    }
     // It could be done when it was asked.
     const std::string id = request->id;
     desk_.give_up(id);
@@ -130,52 +179,62 @@ void AlignNode::begin_watch() {
   const std::int64_t now = context_.bus.now();
   const auto agent = watch_.next(layers_.now(), now);
   if (!agent) return;
-  auto task = make_recheck(*agent, layers_.now(), site_);
-  if (task) {
-    task->id = "slip-" + *agent + "-" + std::to_string(now);
-    return start(std::move(*task));
-  }
-  watch_.looked_at(*agent, layers_.now(), 0, now);
-  desk_.withdraw_offer(*agent);
+  DriftWatch::Look look = DriftWatch::begin(*agent, layers_.now());
+  auto task = guarded([&] { return make_recheck(*agent, layers_.now(), site_); });
+  if (!task) return watch_.looked_at(std::move(look), 0, now);
+  task->id = "slip-" + *agent + "-" + std::to_string(now);
+  start(std::move(*task), std::move(look));
 }
 
 /// A request may have all processors; the watch has one.
-void AlignNode::start(AlignTask task) {
+void AlignNode::start(AlignTask task, std::optional<DriftWatch::Look> look) {
   auto shared = std::make_shared<const AlignTask>(std::move(task));
   const int threads = shared->is_recheck ? 1 : all_threads();
-  running_ = {shared, std::async(how_, [shared, threads] {
-                const auto begun = std::chrono::steady_clock::now();
-                auto alignment = carry_out(*shared, threads);
-                const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begun;
-                if (alignment) alignment->ms = 1e-3 * took.count();
-                return Found{std::move(alignment), std::llround(took.count())};
-              })};
+  std::stop_source stop;
+  auto begun = guarded([&]() -> Result<std::future<Found>> {
+    return std::async(how_, [shared, threads, token = stop.get_token(), compute = compute_] {
+      const auto start = std::chrono::steady_clock::now();
+      auto alignment = guarded([&] { return compute(*shared, threads, token); });
+      const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - start;
+      if (alignment) alignment->ms = 1e-3 * took.count();
+      return Found{std::move(alignment), std::llround(took.count())};
+    });
+  });
+  if (!begun) return end(*shared, std::move(look), {tl::unexpected(begun.error()), 0});
+  running_ = Running{std::move(shared), std::move(look), std::move(stop), std::move(*begun)};
+}
+
+void AlignNode::end(const AlignTask& task, std::optional<DriftWatch::Look> look, const Found& found) {
+  if (!look) return finish(task, found);
+  watch_.looked_at(std::move(*look), found.took, context_.bus.now());
+  finish_watch(task, found);
 }
 
 void AlignNode::finish(const AlignTask& task, const Found& found) {
   if (!found.alignment) {
-    desk_.give_up(task.id);
-    return replies_.deny(kRequests, task.id, found.alignment.error());
+    if (desk_.give_up(task.id)) replies_.deny(kRequests, task.id, found.alignment.error());
+    return;
   }
   const AlignResult* result = desk_.finish(task, result_of(task, *found.alignment, context_.bus.now()));
-  context_.counters.add(std::string("requests.") + name(found.alignment->reason));
   if (result == nullptr) return;  // dropped meanwhile
+  context_.counters.add(std::string("requests.") + name(found.alignment->reason));
   say(*result);
   count();
 }
 
 void AlignNode::finish_watch(const AlignTask& task, const Found& found) {
-  const std::int64_t now = context_.bus.now();
   const std::string& agent = task.used_source.agent;
-  watch_.looked_at(agent, layers_.now(), found.took, now);
   context_.counters.add("looks");
   if (!found.alignment) return context_.counters.refused("watch", found.alignment.error());
-  AlignResult result = result_of(task, *found.alignment, now);
+  // Somebody moved it meanwhile, or the others: then it says nothing of how they lie now, and they are looked at again.
+  const auto stands = [&](const Place& place) { return lies_at(place, layers_.now()); };
+  if (!std::ranges::all_of(places_of(task), stands)) return;
+  AlignResult result = result_of(task, *found.alignment, context_.bus.now());
   const Slip slip = slip_between(*task.T_target_source, result.evidence.T_target_source, task.p_source_middle);
-  if (!result.evidence.accepted()) {
-    // Too little in common says nothing; but what the others contradict people should know.
-    if (!contradicts(*found.alignment)) return desk_.withdraw_offer(agent);
-    result.evidence.message = agent + " and the others contradict each other, and no place is found where they do not";
+  if (contradicts(*found.alignment)) {
+    result.evidence.message = words_of_contradiction(result);
+  } else if (!result.evidence.accepted()) {
+    return;  // too little to say anything, nor that what was said no longer holds
   } else if (slip.is_large(site_.resolution)) {
     result.slip = slip.metres;
     result.slip_angle = slip.radians;

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <future>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 
 #include "align/align_desk.hpp"
@@ -18,8 +20,13 @@ namespace concord {
 /// are aligned. It moves nobody: what people accept it asks merge for, in their name.
 class AlignNode {
  public:
+  /// As carry_out.
+  using Compute = std::function<Result<Alignment>(const AlignTask&, int threads, std::stop_token)>;
+
   /// `how` alignments are computed: beside the bus (async), or within it (deferred), where time stands still.
-  AlignNode(const NodeContext& context, std::launch how);
+  AlignNode(const NodeContext& context, std::launch how, Compute compute = carry_out);
+  /// Ends what is being computed.
+  ~AlignNode();
   AlignNode(const AlignNode&) = delete;
   AlignNode& operator=(const AlignNode&) = delete;
 
@@ -30,6 +37,8 @@ class AlignNode {
   };
   struct Running {
     std::shared_ptr<const AlignTask> task;
+    std::optional<DriftWatch::Look> look;  ///< of the watch
+    std::stop_source stop;
     std::future<Found> found;
   };
 
@@ -41,13 +50,16 @@ class AlignNode {
   void go_on();
   void begin();
   void begin_watch();
-  void start(AlignTask task);
+  void start(AlignTask task, std::optional<DriftWatch::Look> look);
+  void end(const AlignTask& task, std::optional<DriftWatch::Look> look, const Found& found);
   void finish(const AlignTask& task, const Found& found);
   void finish_watch(const AlignTask& task, const Found& found);
+  void repeat();
   void count();
 
   NodeContext context_;
   std::launch how_;
+  Compute compute_;
   AlignSite site_;
   Replies replies_;
   LayersNode layers_;

@@ -6,16 +6,18 @@
 
 #include <Eigen/Geometry>
 
+#include "align/prepare.hpp"
+#include "align/workers.hpp"
 #include "core/compose.hpp"
-#include "core/resample.hpp"
 
 namespace concord {
 namespace {
 
-constexpr std::uint64_t kMaxBricks = 8'000'000;
-constexpr double kContradicts = 0.25;
-/// A map that is too fine or too large to be aligned as it is, is aligned in voxels of this.
-constexpr double kCoarser[] = {0.05, 0.1, 0.2, 0.4};
+/// Rooms that lie right among each other in voxels have up to 4 % against them, those that slipped 7 % and more.
+constexpr double kContradictedWalls = 0.05;
+constexpr double kContradictedLevel = 0.15;
+/// So much says that an agent lies wrong even where little is left that lies on the others.
+constexpr double kContradictedAnyhow = 0.25;
 
 Result<const AgentLayer*> layer_of(const std::string& agent, const std::string& frame_id, const AgentLayers& layers) {
   const auto it = layers.find(agent);
@@ -70,30 +72,60 @@ BrickMap cut(const AgentLayer& layer, const Transform& T_map_layer, const Eigen:
   return out;
 }
 
-Result<AlignMap> prepared(const BrickMap& map, double resolution, int threads) {
-  auto out = make_align_map(map, resolution, threads);
-  for (const double coarser : kCoarser) {
-    const bool is_too_fine = !out && (out.error().code == Code::kTooLarge || out.error().code == Code::kBadResolution);
-    if (!is_too_fine) break;
-    if (coarser <= resolution) continue;
-    const auto coarse = resample(map, resolution, coarser, kMaxBricks);
-    if (!coarse) return tl::unexpected(coarse.error());
-    out = make_align_map(*coarse, coarser, threads);
-  }
-  return out;
-}
-
 Result<AlignMap> prepared_target(const AlignTask& task, int threads) {
   if (task.target.size() == 1 && task.target[0].T_target_part.matrix().isIdentity(0.0)) {
-    return prepared(task.target[0].map, task.site.resolution, threads);
+    return prepare_map(task.target[0].map, task.site.resolution, threads);
   }
   std::vector<Layer> layers;
   for (const AlignTask::Part& part : task.target) layers.push_back({&part.map, part.T_target_part, part.weight});
   const MergedMap merged = compose(layers, {}, task.site.policy, task.site.resolution, threads);
-  return prepared(merged.values, task.site.resolution, threads);
+  return prepare_map(merged.values, task.site.resolution, threads);
+}
+
+/// Whether it may have slipped farther than refinement reaches.
+bool may_have_slipped(const Alignment& near) {
+  return near.reason == AlignReason::kDiverged ||
+         (near.reason == AlignReason::kLowOverlap && near.against_upright >= kContradictedAnyhow);
+}
+
+Result<Alignment> found_of(const AlignTask& task, int threads) {
+  const auto source = prepare_map(task.source, task.site.resolution, threads);
+  if (!source) return tl::unexpected(source.error());
+  const auto target = prepared_target(task, threads);
+  if (!target) return tl::unexpected(target.error());
+  if (!task.is_recheck) return align(*target, *source, task.T_target_source, threads);
+  assert(task.T_target_source);
+  const Alignment near = recheck(*target, *source, *task.T_target_source, threads);
+  if (!may_have_slipped(near)) return near;
+  const Alignment far = align(*target, *source, task.T_target_source, threads);
+  return far.accepted() ? far : near;
 }
 
 }  // namespace
+
+std::vector<Place> places_of(const AgentLayers& layers) {
+  std::vector<Place> places;
+  for (const auto& [agent, layer] : layers) {
+    if (layer.T_map_agent) places.push_back({agent, layer.frame_id, *layer.T_map_agent});
+  }
+  return places;
+}
+
+bool lies_at(const Place& place, const AgentLayers& layers) {
+  const auto it = layers.find(place.agent);
+  return it != layers.end() && it->second.frame_id == place.frame_id && it->second.T_map_agent &&
+         it->second.T_map_agent->isApprox(place.T_map_agent, 1e-9);
+}
+
+std::vector<Place> places_of(const AlignTask& task) {
+  std::vector<Place> places;
+  if (!task.target_agent.empty()) return places;
+  for (std::size_t i = 0; i < task.target.size(); ++i) {
+    places.push_back({task.target[i].agent, task.used_layers[i].frame_id, task.target[i].T_target_part});
+  }
+  if (task.is_recheck) places.push_back({task.used_source.agent, task.used_source.frame_id, *task.T_target_source});
+  return places;
+}
 
 Result<void> check_task(const AlignRequest& request, const AgentLayers& layers) {
   if (request.source == request.target) return refuse(Code::kBadRequest, "an agent lies in itself where it lies");
@@ -166,21 +198,17 @@ Result<AlignTask> make_recheck(const std::string& agent, const AgentLayers& laye
 }
 
 bool contradicts(const Alignment& alignment) {
-  return !alignment.accepted() && alignment.against_upright >= kContradicts;
+  return may_have_slipped(alignment) &&
+         (alignment.against_upright >= kContradictedWalls || alignment.against_level >= kContradictedLevel);
 }
 
-Result<Alignment> carry_out(const AlignTask& task, int threads) {
-  const auto source = prepared(task.source, task.site.resolution, threads);
-  if (!source) return tl::unexpected(source.error());
-  const auto target = prepared_target(task, threads);
-  if (!target) return tl::unexpected(target.error());
-  if (!task.is_recheck) return align(*target, *source, task.T_target_source, threads);
-  assert(task.T_target_source);
-  const Alignment near = recheck(*target, *source, *task.T_target_source, threads);
-  if (near.accepted() || !contradicts(near)) return near;
-  // It no longer lies where it was put, or within voxels of it: it is looked for as from a rough guess.
-  const Alignment far = align(*target, *source, task.T_target_source, threads);
-  return far.accepted() ? far : near;
+Result<Alignment> carry_out(const AlignTask& task, int threads, std::stop_token stop) {
+  const StopScope scope(std::move(stop));
+  try {
+    return found_of(task, threads);
+  } catch (const Stopped& stopped) {
+    return refuse(Code::kExpired, stopped.what());
+  }
 }
 
 AlignResult result_of(const AlignTask& task, Alignment alignment, std::int64_t utime) {

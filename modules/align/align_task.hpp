@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,17 @@
 #include "core/policy.hpp"
 
 namespace concord {
+
+/// Where an agent lay in the map.
+struct Place {
+  std::string agent;
+  std::string frame_id;
+  Transform T_map_agent = Transform::Identity();
+};
+/// Of all who are aligned, by agent.
+[[nodiscard]] std::vector<Place> places_of(const AgentLayers& layers);
+/// Whether it lies there still.
+[[nodiscard]] bool lies_at(const Place& place, const AgentLayers& layers);
 
 /// What the map's lattice and policy are.
 struct AlignSite {
@@ -50,16 +62,23 @@ struct AlignTask {
 [[nodiscard]] Result<AlignTask> make_task(const AlignRequest& request, const AgentLayers& layers,
                                           const AlignSite& site);
 
+/// Where those lay that the task took to be there: who makes up the map and, of a recheck, the agent itself; empty
+/// where the target is an agent, wherever that lies.
+[[nodiscard]] std::vector<Place> places_of(const AlignTask& task);
+
 /// Whether an aligned agent lies right among the others: only what lies within `kRecheckMargin` of both is copied.
 /// Refused: as above, and kNotAligned.
 [[nodiscard]] Result<AlignTask> make_recheck(const std::string& agent, const AgentLayers& layers,
                                              const AlignSite& site);
 inline constexpr double kRecheckMargin = 2.0;  // metres
-/// Whether the others speak against a quarter of the walls that they can speak of: an agent that lies so lies wrong.
+/// Whether the others speak against where an agent lies beyond what a place that is right has against it: DIVERGED, and
+/// a twentieth of the walls or a seventh of the floors. Below that noise and furniture explain it as well.
 [[nodiscard]] bool contradicts(const Alignment& alignment);
 
-/// A pure function of the task; `threads` does not change a bit of it. Refused: see make_align_map.
-[[nodiscard]] Result<Alignment> carry_out(const AlignTask& task, int threads);
+/// A pure function of the task; `threads` does not change a bit of it. What is looked at again and does not lie where
+/// it was put (DIVERGED) is looked for as from a rough guess: it may have slipped farther than a recheck reaches.
+/// Refused: see prepare_map; a stop was asked for (kExpired).
+[[nodiscard]] Result<Alignment> carry_out(const AlignTask& task, int threads, std::stop_token stop = {});
 
 /// What was found with what it was found from, as it is told.
 [[nodiscard]] AlignResult result_of(const AlignTask& task, Alignment alignment, std::int64_t utime);

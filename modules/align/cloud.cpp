@@ -4,16 +4,17 @@
 #include <utility>
 
 #include "align/cell_table.hpp"
+#include "align/surface.hpp"
 
 namespace concord {
 namespace {
 
-constexpr double kResolutions[] = {0.05, 0.1, 0.2, 0.4};
 /// Of the 27 cells around a point of a plane 9 are taken; of a scan's rings fewer.
 constexpr int kSurface = 6;
 constexpr std::size_t kManyPoints = 1'000'000;
 
 bool is_surface_at(std::span<const Eigen::Vector3f> points, double resolution) {
+  if (are_scattered(points, resolution)) return false;
   CellTable cells;
   for (const Eigen::Vector3f& p : points) cells.insert(cell_of(p.cast<double>(), 1.0 / resolution));
   CellTable::Cursor cursor(cells);
@@ -29,7 +30,11 @@ bool is_surface_at(std::span<const Eigen::Vector3f> points, double resolution) {
   return 2 * dense >= points.size();
 }
 
-std::vector<Eigen::Vector3f> means_of_cells(std::span<const Eigen::Vector3f> points, double edge) {
+}  // namespace
+
+std::vector<Eigen::Vector3f> thinned(std::vector<Eigen::Vector3f> points, double resolution) {
+  const double edge = 0.5 * resolution;
+  if (are_scattered(points, edge)) return points;
   CellTable cells;
   std::vector<Eigen::Vector4d> sums;
   for (const Eigen::Vector3f& p : points) {
@@ -43,13 +48,11 @@ std::vector<Eigen::Vector3f> means_of_cells(std::span<const Eigen::Vector3f> poi
   return means;
 }
 
-}  // namespace
-
 PreparedCloud prepare_cloud(std::vector<Eigen::Vector3f> points) {
-  const auto* at = std::find_if(std::begin(kResolutions), std::end(kResolutions) - 1,
+  const auto* at = std::find_if(std::begin(kAlignResolutions), std::end(kAlignResolutions) - 1,
                                 [&](double resolution) { return is_surface_at(points, resolution); });
   PreparedCloud out{std::move(points), *at};
-  if (out.points.size() > kManyPoints) out.points = means_of_cells(out.points, 0.5 * out.resolution);
+  if (out.points.size() > kManyPoints) out.points = thinned(std::move(out.points), out.resolution);
   return out;
 }
 

@@ -28,6 +28,10 @@ constexpr double kRoomReach = 6.0;  // metres from its middle: up to here it is 
 constexpr double kMaxYawStep = 2.0 * M_PI / 180.0;
 constexpr std::size_t kBatch = 64;  // nodes opened together
 constexpr std::size_t kMaxNodes = 400'000;
+/// Bounds on what is taken before the first node is opened: windows in which to look, some seconds of one processor;
+/// and turned columns, 128 MB.
+constexpr std::size_t kMaxSeeds = 1 << 22;
+constexpr std::size_t kMaxTurned = 1 << 24;
 constexpr double kSamePlace = 5.0;  // cells
 constexpr double kSameYaw = 10.0 * M_PI / 180.0;
 constexpr int kTop = WallGrid::kLevels - 1;
@@ -49,15 +53,30 @@ double wrapped(double angle) { return std::remainder(angle, 2.0 * M_PI); }
 class Search {
  public:
   Search(const AlignMap& target, const Eigen::Matrix3d& R_target, const AlignMap& source,
-         const Eigen::Matrix3d& R_source, int threads)
-      : threads_(threads), scale_(scale_for(source, R_source)), cell_(scale_.cell), grid_(target, R_target, cell_) {
-    take_columns(wall_columns(source, R_source, cell_));
+         const Eigen::Matrix3d& R_source, const SearchWindow& window, int threads)
+      : threads_(threads),
+        window_(window),
+        scale_(scale_for(source, R_source)),
+        cell_(scale_.cell),
+        grid_(target, R_target, cell_) {
+    std::vector<WallColumn> walls = wall_columns(source, R_source, cell_);
+    take_columns(walls);
+    if (prepare()) return;
+    // Few pieces that stand far off make a source wide: what it says of itself near by is enough to find it by.
+    walls = without_far(wall_columns(source, R_source, kRoom.cell));
+    scale_ = scale_for(walls);
+    if (scale_.cell != cell_) {
+      cell_ = scale_.cell;
+      grid_ = WallGrid(target, R_target, cell_);
+    }
+    if (cell_ != kRoom.cell) walls = without_far(wall_columns(source, R_source, cell_));
+    take_columns(walls);
+    is_too_wide_ = !prepare();
   }
 
-  std::vector<PlanarPose> run(const SearchWindow& window) {
-    if (columns_.size() < kMinColumns || grid_.size().minCoeff() == 0) return {};
-    turn(window);
-    seed(window);
+  std::vector<PlanarPose> run() {
+    if (is_too_wide_ || columns_.size() < kMinColumns || grid_.size().minCoeff() == 0) return {};
+    seed();
     return open_best_first();
   }
 
@@ -81,7 +100,20 @@ class Search {
     return (high - low).maxCoeff() < 2.0 * kRoomReach ? kRoom : kBuilding;
   }
 
-  void take_columns(std::vector<WallColumn> walls) {
+  static Scale scale_for(const std::vector<WallColumn>& walls) {
+    Eigen::Vector2f low = Eigen::Vector2f::Constant(1e9F);
+    Eigen::Vector2f high = -low;
+    for (const WallColumn& wall : walls) {
+      low = low.cwiseMin(wall.p);
+      high = high.cwiseMax(wall.p);
+    }
+    return (high - low).maxCoeff() < 2.0 * kRoomReach ? kRoom : kBuilding;
+  }
+
+  void take_columns(const std::vector<WallColumn>& walls) {
+    middle_ = Eigen::Vector2d::Zero();
+    columns_.clear();
+    weight_ = 0;
     for (const WallColumn& wall : walls) middle_ += wall.p.cast<double>();
     if (!walls.empty()) middle_ /= static_cast<double>(walls.size());
     const std::size_t take = std::min(walls.size(), kMaxColumns);
@@ -92,15 +124,11 @@ class Search {
     }
   }
 
-  void turn(const SearchWindow& window) {
-    std::vector<double> radii;
-    for (const Column& column : columns_) radii.push_back(column.p.norm());
-    std::nth_element(radii.begin(), radii.begin() + radii.size() * 9 / 10, radii.end());
-    const double step = std::min(kMaxYawStep, cell_ / std::max(radii[radii.size() * 9 / 10], cell_));
-    const double middle = window.guess ? std::atan2(window.guess->linear()(1, 0), window.guess->linear()(0, 0)) : 0.0;
-    const double reach = window.guess ? std::min(window.yaw, M_PI) : M_PI;
-    const int count = static_cast<int>(std::ceil(2.0 * reach / step));
-    for (int i = 0; i < count; ++i) yaws_.push_back(wrapped(middle - reach + (i + 0.5) * 2.0 * reach / count));
+  /// Turns the columns to all yaws. @return false: there is too much to look at.
+  bool prepare() {
+    if (columns_.size() < kMinColumns || grid_.size().minCoeff() == 0) return true;
+    yaws_ = yaws();
+    if (yaws_.size() * columns_.size() > kMaxTurned) return false;
     turned_.resize(yaws_.size() * columns_.size());
     for (std::size_t i = 0; i < yaws_.size(); ++i) {
       const Eigen::Rotation2Dd R(yaws_[i]);
@@ -109,6 +137,34 @@ class Search {
         turned_[i * columns_.size() + c] = {static_cast<std::int32_t>(p.x()), static_cast<std::int32_t>(p.y())};
       }
     }
+    return count_seeds() <= kMaxSeeds;
+  }
+
+  std::vector<double> yaws() const {
+    std::vector<double> radii;
+    for (const Column& column : columns_) radii.push_back(column.p.norm());
+    std::nth_element(radii.begin(), radii.begin() + radii.size() * 9 / 10, radii.end());
+    const double step = std::min(kMaxYawStep, cell_ / std::max(radii[radii.size() * 9 / 10], cell_));
+    const auto& guess = window_.guess;
+    const double middle = guess ? std::atan2(guess->linear()(1, 0), guess->linear()(0, 0)) : 0.0;
+    const double reach = guess ? std::min(window_.yaw, M_PI) : M_PI;
+    const int count = static_cast<int>(std::ceil(2.0 * reach / step));
+    std::vector<double> out;
+    for (int i = 0; i < count; ++i) out.push_back(wrapped(middle - reach + (i + 0.5) * 2.0 * reach / count));
+    return out;
+  }
+
+  std::size_t count_seeds() const {
+    std::size_t count = 0;
+    for (std::size_t yaw = 0; yaw < yaws_.size() && count <= kMaxSeeds; ++yaw) {
+      for (const auto& [low, high] : windows(yaw)) {
+        const auto side = [&](int axis) {
+          return static_cast<std::size_t>((high[axis] >> kTop) - (low[axis] >> kTop) + 1);
+        };
+        count += side(0) * side(1);
+      }
+    }
+    return count;
   }
 
   int bound(int yaw, int level, int x, int y) const {
@@ -121,9 +177,9 @@ class Search {
   }
 
   /// Windows of shifts, [low, high] in cells, for one yaw.
-  std::vector<std::pair<Eigen::Vector2i, Eigen::Vector2i>> windows(std::size_t yaw, const SearchWindow& window) const {
+  std::vector<std::pair<Eigen::Vector2i, Eigen::Vector2i>> windows(std::size_t yaw) const {
     const Turned* turned = &turned_[yaw * columns_.size()];
-    if (!window.guess) {
+    if (!window_.guess) {
       Eigen::Vector2i low = Eigen::Vector2i::Constant(INT32_MAX / 2);
       Eigen::Vector2i high = -low;
       for (std::size_t c = 0; c < columns_.size(); ++c) {
@@ -134,7 +190,7 @@ class Search {
     }
     // Points of the source that a wrong turn may have left in place: its origin, its middle, and what the guess puts on
     // the target's origin and middle.
-    const Transform T_source_target = window.guess->inverse();
+    const Transform T_source_target = window_.guess->inverse();
     const Eigen::Vector2i middle = grid_.origin() + grid_.size() / 2;
     const Eigen::Vector3d p_target_middle(middle.x() * cell_, middle.y() * cell_, 0.0);
     const std::vector<Eigen::Vector2d> pivots{Eigen::Vector2d::Zero(), middle_,
@@ -142,19 +198,19 @@ class Search {
                                               Eigen::Vector3d(T_source_target * p_target_middle).head<2>()};
     std::vector<std::pair<Eigen::Vector2i, Eigen::Vector2i>> out;
     for (const Eigen::Vector2d& pivot : pivots) {
-      const Eigen::Vector2d p_target = (*window.guess * Eigen::Vector3d(pivot.x(), pivot.y(), 0.0)).head<2>();
+      const Eigen::Vector2d p_target = (*window_.guess * Eigen::Vector3d(pivot.x(), pivot.y(), 0.0)).head<2>();
       const Eigen::Vector2d shift = p_target - Eigen::Rotation2Dd(yaws_[yaw]) * (pivot - middle_);
-      out.emplace_back(((shift.array() - window.reach) / cell_).floor().cast<int>(),
-                       ((shift.array() + window.reach) / cell_).ceil().cast<int>());
+      out.emplace_back(((shift.array() - window_.reach) / cell_).floor().cast<int>(),
+                       ((shift.array() + window_.reach) / cell_).ceil().cast<int>());
     }
     return out;
   }
 
-  void seed(const SearchWindow& window) {
+  void seed() {
     std::vector<std::vector<Node>> seeds(yaws_.size());
     for_each_chunk(threads_, seeds.size(), [&](std::size_t yaw) {
       std::set<std::pair<int, int>> corners;
-      for (const auto& [low, high] : windows(yaw, window)) {
+      for (const auto& [low, high] : windows(yaw)) {
         for (int y = low.y() >> kTop; y <= high.y() >> kTop; ++y) {
           for (int x = low.x() >> kTop; x <= high.x() >> kTop; ++x) corners.emplace(y, x);
         }
@@ -230,9 +286,11 @@ class Search {
   }
 
   int threads_;
+  SearchWindow window_;
   Scale scale_;
   double cell_;
   WallGrid grid_;
+  bool is_too_wide_ = false;
   Eigen::Vector2d middle_ = Eigen::Vector2d::Zero();
   std::vector<Column> columns_;
   int weight_ = 0;
@@ -246,7 +304,7 @@ class Search {
 std::vector<PlanarPose> search_columns(const AlignMap& target, const Eigen::Matrix3d& R_upright_target,
                                        const AlignMap& source, const Eigen::Matrix3d& R_upright_source,
                                        const SearchWindow& window, int threads) {
-  return Search(target, R_upright_target, source, R_upright_source, threads).run(window);
+  return Search(target, R_upright_target, source, R_upright_source, window, threads).run();
 }
 
 }  // namespace concord

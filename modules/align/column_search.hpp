@@ -30,6 +30,10 @@ struct SearchWindow {
 /// it for all places in it. Nodes are opened best first, in batches of fixed size, so that the places come out in order
 /// and do not depend on the number of threads. A guess' window is the union over several points of the source that
 /// people may have turned it about.
+///
+/// Where there is too much to look at (over 4 million windows, as for a source of 200 m without a guess) what stands
+/// far off is left out, and if that is of no help there are no places.
+/// @throws Stopped: see StopScope.
 [[nodiscard]] std::vector<PlanarPose> search_columns(const AlignMap& target, const Eigen::Matrix3d& R_upright_target,
                                                      const AlignMap& source, const Eigen::Matrix3d& R_upright_source,
                                                      const SearchWindow& window, int threads);

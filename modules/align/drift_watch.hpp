@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "align/align_task.hpp"
 
@@ -17,19 +18,30 @@ class DriftWatch {
   /// Of one processor: a look that took t is followed by a pause of 19 t.
   static constexpr double kShare = 0.05;
 
-  /// The aligned agent that was looked at the longest ago, of those that sent something since or were moved; none: not
-  /// now.
+  /// An agent as it was when it began to be looked at, and where everybody lay.
+  struct Look {
+    std::string agent;
+    std::int64_t revision = 0;
+    std::vector<Place> places;
+  };
+
+  /// The aligned agent that was looked at the longest ago, of those that sent something since, or that lie otherwise
+  /// among the others: they or it were moved. None: not now.
   [[nodiscard]] std::optional<std::string> next(const AgentLayers& layers, std::int64_t now) const;
-  /// It was looked at as it is in `layers`, which took so many microseconds.
-  void looked_at(const std::string& agent, const AgentLayers& layers, std::int64_t took, std::int64_t now);
+  /// @pre the agent is among the layers.
+  [[nodiscard]] static Look begin(const std::string& agent, const AgentLayers& layers);
+  /// That look is over, and took so many microseconds.
+  void looked_at(Look look, std::int64_t took, std::int64_t now);
+  /// What was found of it holds no longer: it is looked at again.
+  void forget(const std::string& agent);
 
  private:
   struct Seen {
-    std::string frame_id;
-    std::int64_t revision = 0;
-    Transform T_map_agent = Transform::Identity();
+    Look look;
     std::int64_t when = 0;
   };
+  [[nodiscard]] static bool is_as_it_was(const Look& look, const AgentLayers& layers);
+
   std::map<std::string, Seen> seen_;
   std::int64_t not_before_ = 0;
 };

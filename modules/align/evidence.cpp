@@ -1,9 +1,7 @@
 #include "align/evidence.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -141,6 +139,12 @@ bool Support::is_contested() const {
          -kContested * kContestedShare * upright().matched;
 }
 
+Verdicts Support::all() const {
+  Verdicts v = upright();
+  v.add(level());
+  return v;
+}
+
 Eigen::Vector2d Support::weak_direction() const {
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(matched_facing).eigenvectors().col(0);
 }
@@ -158,17 +162,8 @@ Support support(const AlignMap& target, const AlignMap& source, const Transform&
           of_source.against + R * of_target.against * R.transpose()};
 }
 
-std::string name_slide(const Eigen::Vector3d& axis) {
-  int largest = 0;
-  axis.cwiseAbs().maxCoeff(&largest);
-  const Eigen::Vector3d a = axis[largest] < 0.0 ? Eigen::Vector3d(-axis) : axis;
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "slides along %c (%.2f %.2f %.2f)", "xyz"[largest], a.x(), a.y(), a.z());
-  return text.data();
-}
-
 Matrix6 covariance(const GicpResult& result) {
-  const double sigma = std::max(result.rms, kMinSigma);
+  const double sigma = std::max(result.sigma, kMinSigma);
   const double damping = 1e-9 * std::max(result.hessian.diagonal().maxCoeff(), 1e-9);
   const Matrix6 inverse = (result.hessian + damping * Matrix6::Identity()).ldlt().solve(Matrix6::Identity());
   return sigma * sigma * kPairsPerMeasurement * 0.5 * (inverse + inverse.transpose());

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -36,6 +35,7 @@ struct Support {
 
   [[nodiscard]] Verdicts upright() const;
   [[nodiscard]] Verdicts level() const;
+  [[nodiscard]] Verdicts all() const;
   [[nodiscard]] double overlap_source() const;
   [[nodiscard]] double overlap_target() const;
   /// Square metres of walls and furniture that lie right, less ten times those that speak against: zero where one in
@@ -54,8 +54,5 @@ struct Support {
 /// 6 x 6, rotation about `p_target_centre` then translation, target's axes; of the noise across the surfaces, with
 /// neighbouring cells counted as one measurement.
 [[nodiscard]] Matrix6 covariance(const GicpResult& result);
-
-/// "slides along x (0.98 0.17 0.00)"
-[[nodiscard]] std::string name_slide(const Eigen::Vector3d& axis);
 
 }  // namespace concord

@@ -137,6 +137,20 @@ FreeSpace FreeSpace::implied(const SurfaceLevel& surface, int threads) {
   return out;
 }
 
+FreeSpace FreeSpace::mirrored() const {
+  FreeSpace out;
+  out.block_ = block_;
+  out.per_metre_ = per_metre_;
+  for (std::size_t i = 0; i < blocks_.words().size(); ++i) {
+    const std::uint64_t word = blocks_.words()[i];
+    const std::uint64_t pairs = (word & 0x5555555555555555ULL) << 1 | (word >> 1 & 0x5555555555555555ULL);
+    const std::uint64_t cells = (pairs & 0x3333333333333333ULL) << 2 | (pairs >> 2 & 0x3333333333333333ULL);
+    const VoxelIndex at = blocks_.bricks()[i];
+    out.blocks_.insert_brick({-1 - at.x, at.y, at.z}, cells);
+  }
+  return out;
+}
+
 bool FreeSpace::contains(const Eigen::Vector3d& p) const { return blocks_.contains(cell_of(p, per_metre_)); }
 
 std::size_t FreeSpace::block_count() const {

@@ -29,6 +29,9 @@ class FreeSpace {
   /// What a surface lets one conclude. @pre z up.
   [[nodiscard]] static FreeSpace implied(const SurfaceLevel& surface, int threads);
 
+  /// Of the map as a mirror in the plane x = 0 shows it.
+  [[nodiscard]] FreeSpace mirrored() const;
+
   [[nodiscard]] bool contains(const Eigen::Vector3d& p) const;
   /// All of it in pieces, in a fixed order.
   [[nodiscard]] std::vector<FreeColumn> columns() const;

@@ -1,6 +1,7 @@
 #include "align/gates.hpp"
 
 #include <algorithm>
+#include <cstdio>
 
 namespace concord {
 namespace {
@@ -23,13 +24,23 @@ constexpr double kRoomWalls = 100.0;  // square metres, both ways
 constexpr double kBuildingWalls = 300.0;
 
 constexpr double kMinLevel = 1.0;  // square metres of floor or ceiling that lie right, both ways
-constexpr double kMinRise = 1.0;   // square metres
+constexpr double kLevelsThatHold =
+    0.1;                          // of the walls that lie right: fewer floors and ceilings are not asked about height
+constexpr double kMinRise = 1.0;  // square metres
 constexpr double kMinShareRise = 0.02;
 constexpr double kMaxLevelAgainst = 0.15;
 /// Of all that lies right: where a map has hardly any floor, what is called level is edges of other things.
 constexpr double kFewAgainst = 0.02;
+/// A rival: less against it than this, than it might have to be accepted, or than is against the answer and a little.
 constexpr double kPlausibleAgainst = 0.05;
-constexpr double kPlausibleLevelAgainst = 0.08;
+constexpr double kMoreAgainst = 0.02;
+constexpr double kMoreLevelAgainst = 0.04;
+/// Refinement takes some of what speaks against a rough place away.
+constexpr double kRoughAgainst = 0.15;
+constexpr double kRoughLevelAgainst = 0.25;
+/// By how much a mirror image must be better: what noise makes of two that are as good.
+constexpr double kMirroredShare = 1.02;
+constexpr double kMirroredMore = 1.0;  // square metres
 
 const Gates& gates_for(Origin origin) { return origin == Origin::kGuess ? kWithGuess : kWithoutGuess; }
 
@@ -51,25 +62,76 @@ bool levels_contradict(const Support& s) {
          level.against() > kFewAgainst * (s.upright().matched + level.matched);
 }
 
-}  // namespace
-
-AlignReason check_gates(const Support& s, Origin origin) {
-  const Gates& gates = gates_for(origin);
-  const Verdicts upright = s.upright();
-  if (overlap(s) < gates.min_overlap || upright.matched < gates.min_upright) return AlignReason::kLowOverlap;
-  const double walls = upright.matched;
-  if (upright.share_against() > between(kMaxAgainstRoom, kMaxAgainstBuilding, walls) ||
-      contradicted_share(upright) > between(kMaxContradictedRoom, kMaxContradictedBuilding, walls) ||
-      levels_contradict(s)) {
-    return AlignReason::kDiverged;
-  }
-  if (s.level().matched < kMinLevel) return AlignReason::kDegenerate;
-  return s.is_contested() ? AlignReason::kDiverged : AlignReason::kAccepted;
+std::string percent(double share) {
+  char text[16];
+  std::snprintf(text, sizeof text, "%.1f %%", 100.0 * share);
+  return text;
 }
 
-bool is_plausible(const Support& s) {
-  return overlap(s) >= kWithGuess.min_overlap && s.upright().share_against() <= kPlausibleAgainst &&
-         s.level().share_against() <= kPlausibleLevelAgainst;
+std::string of_allowed(double share, double allowed) { return percent(share) + ", " + percent(allowed) + " allowed"; }
+
+GateAnswer low_overlap(const std::string& what) {
+  return {AlignReason::kLowOverlap, what + "; map more of what both have seen, or give a guess"};
+}
+
+GateAnswer diverged(const std::string& what) {
+  return {AlignReason::kDiverged,
+          "the maps contradict each other there: " + what + "; give a better guess, or map what was moved anew"};
+}
+
+bool rises(const Verdicts& there, const Verdicts& here) {
+  return there.against() >= here.against() + kMinRise && there.share_against() >= here.share_against() + kMinShareRise;
+}
+
+}  // namespace
+
+GateAnswer check_gates(const Support& s, Origin origin) {
+  const Gates& gates = gates_for(origin);
+  const Verdicts upright = s.upright();
+  const double walls = upright.matched;
+  if (overlap(s) < gates.min_overlap) {
+    return low_overlap("only " + percent(overlap(s)) + " of either map lies on the other, " +
+                       percent(gates.min_overlap) + " asked");
+  }
+  if (walls < gates.min_upright) {
+    return low_overlap("only " + std::to_string(walls).substr(0, 4) + " m2 of walls lie on each other, " +
+                       std::to_string(gates.min_upright).substr(0, 4) + " asked");
+  }
+  const double max_against = between(kMaxAgainstRoom, kMaxAgainstBuilding, walls);
+  if (upright.share_against() > max_against) {
+    return diverged("of the walls that both can tell of " + of_allowed(upright.share_against(), max_against));
+  }
+  const double max_contradicted = between(kMaxContradictedRoom, kMaxContradictedBuilding, walls);
+  if (contradicted_share(upright) > max_contradicted) {
+    return diverged("walls where the other saw nothing, " + of_allowed(contradicted_share(upright), max_contradicted));
+  }
+  if (levels_contradict(s)) {
+    return diverged("of floors and ceilings " + of_allowed(s.level().share_against(), kMaxLevelAgainst));
+  }
+  if (s.level().matched < kMinLevel) {
+    return {AlignReason::kDegenerate, "no floor or ceiling that both have seen holds the height; map some"};
+  }
+  if (s.is_contested()) return diverged("most walls that face one way lie wrong");
+  return {};
+}
+
+bool may_rival(const Support& rough) {
+  return overlap(rough) >= kWithGuess.min_overlap && rough.upright().share_against() <= kRoughAgainst &&
+         rough.level().share_against() <= kRoughLevelAgainst;
+}
+
+bool is_rival(const Support& place, const Support& accepted) {
+  const Verdicts upright = place.upright();
+  const double walls = std::max({kPlausibleAgainst, accepted.upright().share_against() + kMoreAgainst,
+                                 between(kMaxAgainstRoom, kMaxAgainstBuilding, upright.matched)});
+  const double levels = std::max(kMaxLevelAgainst, accepted.level().share_against() + kMoreLevelAgainst);
+  return overlap(place) >= kWithGuess.min_overlap && upright.share_against() <= walls &&
+         place.level().share_against() <= levels;
+}
+
+bool is_better_mirrored(const Support& mirrored, const Support& accepted) {
+  return overlap(mirrored) >= kWithGuess.min_overlap &&
+         mirrored.score() > kMirroredShare * accepted.score() + kMirroredMore;
 }
 
 bool ranks_before(const Support& a, const Support& b) {
@@ -78,11 +140,15 @@ bool ranks_before(const Support& a, const Support& b) {
   return first != second ? first : a.score() > b.score();
 }
 
-bool is_as_good(const Support& slid, const Support& good) {
-  if (overlap(slid) < kWithGuess.min_overlap) return false;
-  const Verdicts there = slid.upright();
-  const Verdicts here = good.upright();
-  return there.against() < here.against() + kMinRise || there.share_against() < here.share_against() + kMinShareRise;
+bool is_as_good(const Support& moved, const Support& good) {
+  return overlap(moved) >= kWithGuess.min_overlap && !rises(moved.upright(), good.upright());
+}
+
+bool is_as_good_in_height(const Support& moved, const Support& good) {
+  if (overlap(moved) < kWithGuess.min_overlap) return false;
+  // A table that came to lie on a floor holds no height.
+  const bool has_levels = good.level().matched >= kLevelsThatHold * good.upright().matched;
+  return has_levels ? !rises(moved.all(), good.all()) : !rises(moved.upright(), good.upright());
 }
 
 }  // namespace concord

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "align/evidence.hpp"
 #include "core/alignment.hpp"
 
@@ -11,18 +13,31 @@ inline constexpr std::size_t kMinSurfacePoints = 200;
 /// How a place came to be looked at. Among thousands of places some fit by chance: without a guess more is asked.
 enum class Origin { kGuess, kAnywhere };
 
-/// What a place must show to be believed, were it the only one: kAccepted, kLowOverlap, kDegenerate or kDiverged.
-[[nodiscard]] AlignReason check_gates(const Support& support, Origin origin);
+struct GateAnswer {
+  AlignReason reason = AlignReason::kAccepted;
+  std::string message;  ///< which gate was not passed, by how much, and what to do; empty where all were
+};
 
-/// Whether a place speaks against another one that passed the gates: enough overlap and too little against it, however
-/// loosely it is held.
-[[nodiscard]] bool is_plausible(const Support& support);
+/// What a place must show to be believed, were it the only one: kAccepted, kLowOverlap, kDegenerate or kDiverged.
+[[nodiscard]] GateAnswer check_gates(const Support& support, Origin origin);
+
+/// Whether a place, roughly refined, may turn out to be a rival.
+[[nodiscard]] bool may_rival(const Support& rough);
+/// Whether a refined place speaks against another one that passed the gates: enough overlap, and little against it, or
+/// hardly more than against the other; however loosely it is held.
+[[nodiscard]] bool is_rival(const Support& place, const Support& accepted);
+
+/// Whether the source's mirror image lies better in the target than the source itself does: one of the two is
+/// mirrored, or they are two rooms of one plan.
+[[nodiscard]] bool is_better_mirrored(const Support& mirrored, const Support& accepted);
 
 /// Which of two places to look at first: those with enough overlap, then by score.
 [[nodiscard]] bool ranks_before(const Support& a, const Support& b);
 
-/// Whether a place that was slid from a good one is as good: what speaks against it must rise by a fiftieth of what the
-/// maps can tell, and by a square metre, else nothing holds the source there.
-[[nodiscard]] bool is_as_good(const Support& slid, const Support& good);
+/// Whether a place that was moved from a good one is as good: what speaks against it must rise by a fiftieth of what
+/// the maps can tell, and by a square metre, else nothing holds the source there. Along the ground and in turns walls
+/// are asked, in height everything.
+[[nodiscard]] bool is_as_good(const Support& moved, const Support& good);
+[[nodiscard]] bool is_as_good_in_height(const Support& moved, const Support& good);
 
 }  // namespace concord

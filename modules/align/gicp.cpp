@@ -32,6 +32,8 @@ struct Sums {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   double weight = 0.0;
   double squares = 0.0;
+  double flat_weight = 0.0;
+  double flat_squares = 0.0;
   std::size_t pairs = 0;
 
   void add_pair(const Eigen::Vector3d& p, double w, double squared) {
@@ -46,6 +48,8 @@ struct Sums {
     centre += other.centre;
     weight += other.weight;
     squares += other.squares;
+    flat_weight += other.flat_weight;
+    flat_squares += other.flat_squares;
     pairs += other.pairs;
   }
 };
@@ -133,6 +137,8 @@ class Linearisation {
     out.hessian += Jw * J.transpose();
     out.gradient += across * Jw;
     out.add_pair(p, w, squared);
+    out.flat_weight += w;
+    out.flat_squares += w * across * across;
   }
 
   void add_solid(const Eigen::Vector3d& p, const Eigen::Vector3d& d, const Eigen::Vector3d& pivot, Sums& out) const {
@@ -191,7 +197,8 @@ GicpResult refine(const SurfaceLevel& target, std::span<const SurfaceCell> sourc
     const Sums sums = linearise.at(out.T_target_source, out.p_target_centre);
     out.pairs = sums.pairs;
     out.weight = sums.weight;
-    out.rms = sums.weight > 0.0 ? std::sqrt(sums.squares / sums.weight) : 0.0;
+    out.rms = sums.flat_weight > 0.0 ? std::sqrt(sums.flat_squares / sums.flat_weight) : 0.0;
+    out.sigma = sums.weight > 0.0 ? std::sqrt(sums.squares / sums.weight) : 0.0;
     out.hessian = sums.hessian;
     if (sums.pairs < 6 || out.converged || out.iterations == options.max_iterations) return out;
     const double damping = kDamping * sums.hessian.diagonal().maxCoeff();

@@ -16,7 +16,8 @@ struct GicpResult {
   int iterations = 0;
   bool converged = false;
   std::size_t pairs = 0;  ///< points of the source that had a partner at the end
-  double rms = 0.0;       ///< metres, across the surfaces, of the pairs the kernel trusts
+  double rms = 0.0;       ///< metres, across the surfaces, of the flat pairs as far as the kernel trusts them
+  double sigma = 0.0;     ///< metres: the error of a pair that counts whole, turned normals and solid pairs among them
   double weight = 0.0;    ///< sum of the kernel's weights over all pairs
   /// Gauss-Newton Hessian per square metre of error across the surface: rotation about `p_target_centre`, then
   /// translation, in the target's axes.

@@ -15,6 +15,7 @@ namespace {
 constexpr double kGuessYaw = 46.0 * M_PI / 180.0;
 constexpr double kYawSlack = 1.0 * M_PI / 180.0;  // what refinement may add
 constexpr double kGuessReach = 2.6;               // metres
+constexpr double kReachSlack = 0.4;               // metres: by which people's middle of a map and ours differ, turned
 constexpr double kGuessHeight = 3.0;              // metres: less than a storey
 /// A guess that is tilted by more than this means it: the source's frame is not upright. Less is a shaky hand.
 constexpr double kMeantTilt = 15.0 * M_PI / 180.0;
@@ -111,11 +112,6 @@ void sort_places(std::vector<Hypothesis>& places, const Eigen::Vector3d& p_sourc
   places = std::move(apart);
 }
 
-bool is_near_guess(const Transform& T, const Transform& guess) {
-  const Eigen::Matrix3d R = T.linear() * guess.linear().transpose();
-  return std::abs(std::atan2(R(1, 0) - R(0, 1), R(0, 0) + R(1, 1))) <= kGuessYaw + kYawSlack;
-}
-
 struct UprightPair {
   Eigen::Matrix3d target, source;
   std::optional<Transform> guess;  ///< between the upright frames
@@ -144,11 +140,13 @@ std::pair<double, double> height_window(const UprightPair& pair, const AlignMap&
   return {std::min(at_origin, at_middle) - kGuessHeight, std::max(at_origin, at_middle) + kGuessHeight};
 }
 
-std::vector<Transform> places(const AlignMap& target, const AlignMap& source, const std::optional<Transform>& guess,
+std::vector<Transform> places(const AlignMap& target, const AlignMap& source, const std::optional<Vicinity>& vicinity,
                               int threads) {
+  std::optional<Transform> guess;
+  if (vicinity) guess = vicinity->T_target_source;
   const UprightPair pair = make_upright(target, source, guess);
   const auto [low, high] = height_window(pair, source);
-  const SearchWindow window{pair.guess, kGuessYaw, kGuessReach};
+  const SearchWindow window{pair.guess, vicinity ? vicinity->yaw : 0.0, vicinity ? vicinity->reach : 0.0};
   std::vector<Transform> out;
   for (const PlanarPose& pose : search_columns(target, pair.target, source, pair.source, window, threads)) {
     Transform T = Transform::Identity();
@@ -178,11 +176,24 @@ bool are_apart(const Transform& a, const Transform& b, const Eigen::Vector3d& p_
          Eigen::AngleAxisd(Eigen::Matrix3d(a.linear().transpose() * b.linear())).angle() > kTurnApart;
 }
 
+Vicinity around_guess(const Transform& guess) { return {guess, kGuessYaw, kGuessReach}; }
+
+bool is_in(const Vicinity& vicinity, const Transform& T_target_source, const Eigen::Vector3d& p_source_middle) {
+  const Transform& middle = vicinity.T_target_source;
+  const Eigen::Matrix3d R = T_target_source.linear() * middle.linear().transpose();
+  if (std::abs(std::atan2(R(1, 0) - R(0, 1), R(0, 0) + R(1, 1))) > vicinity.yaw + kYawSlack) return false;
+  const auto is_in_reach = [&](const Eigen::Vector3d& p_source) {
+    const Eigen::Vector3d d = T_target_source * p_source - middle * p_source;
+    return d.head<2>().cwiseAbs().maxCoeff() <= vicinity.reach + kReachSlack && std::abs(d.z()) <= kGuessHeight;
+  };
+  return is_in_reach(Eigen::Vector3d::Zero()) || is_in_reach(p_source_middle);
+}
+
 std::vector<Hypothesis> find_hypotheses(const AlignMap& target, const AlignMap& source,
-                                        const std::optional<Transform>& guess, int threads) {
+                                        const std::optional<Vicinity>& vicinity, int threads) {
   const Eigen::Vector3d middle = middle_of(source);
   std::vector<Hypothesis> all;
-  for (const Transform& place : places(target, source, guess, threads)) {
+  for (const Transform& place : places(target, source, vicinity, threads)) {
     all.push_back(look_quickly(target, source, place, threads));
   }
   sort_places(all, middle);
@@ -194,7 +205,7 @@ std::vector<Hypothesis> find_hypotheses(const AlignMap& target, const AlignMap& 
     h.iterations += result.iterations;
     h.support = support(target, source, h.T_target_source, kJudgePieces, threads);
   }
-  if (guess) std::erase_if(all, [&](const Hypothesis& h) { return !is_near_guess(h.T_target_source, *guess); });
+  if (vicinity) std::erase_if(all, [&](const Hypothesis& h) { return !is_in(*vicinity, h.T_target_source, middle); });
   sort_places(all, middle);
   return all;
 }

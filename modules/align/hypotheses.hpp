@@ -16,10 +16,21 @@ struct Hypothesis {
   int iterations = 0;
 };
 
-/// The places worth judging, best first, each once: from the columns of walls, and the guess itself. With a guess, none
-/// that is farther from it than people's guesses are.
+/// Places to look among: those that differ from a transform by no more than this.
+struct Vicinity {
+  Transform T_target_source = Transform::Identity();
+  double yaw = 0.0;    ///< radians
+  double reach = 0.0;  ///< metres on each axis along the ground, at the source's origin or at its middle
+};
+/// Where a person's rough guess may be meant: 2 m on each axis, 45 degrees of yaw, and a margin.
+[[nodiscard]] Vicinity around_guess(const Transform& guess);
+[[nodiscard]] bool is_in(const Vicinity& vicinity, const Transform& T_target_source,
+                         const Eigen::Vector3d& p_source_middle);
+
+/// The places worth judging, best first, each once: from the columns of walls, and the middle of the vicinity itself;
+/// with one, none outside of it.
 [[nodiscard]] std::vector<Hypothesis> find_hypotheses(const AlignMap& target, const AlignMap& source,
-                                                      const std::optional<Transform>& guess, int threads);
+                                                      const std::optional<Vicinity>& vicinity, int threads);
 
 /// Through all levels, coarse to fine, and to the resolution of the source.
 [[nodiscard]] GicpResult refine_fully(const AlignMap& target, const AlignMap& source, const Transform& T, int threads);

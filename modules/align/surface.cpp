@@ -50,6 +50,21 @@ constexpr int kLoner = 5;
 
 }  // namespace
 
+bool are_scattered(std::span<const Eigen::Vector3f> points, double resolution) {
+  if (points.size() <= kMaxSurfaceBlocks) return false;
+  const double per_metre = 1.0 / (4.0 * resolution);
+  constexpr std::int64_t kHalf = 1 << 20;  // 10 km in blocks of 4 cm are a quarter of that
+  std::vector<std::uint64_t> blocks;
+  blocks.reserve(points.size());
+  for (const Eigen::Vector3f& p : points) {
+    const VoxelIndex at = cell_of(p.cast<double>(), per_metre);
+    blocks.push_back(static_cast<std::uint64_t>(at.x + kHalf) << 42 | static_cast<std::uint64_t>(at.y + kHalf) << 21 |
+                     static_cast<std::uint64_t>(at.z + kHalf));
+  }
+  std::sort(blocks.begin(), blocks.end());
+  return std::unique(blocks.begin(), blocks.end()) - blocks.begin() > static_cast<std::ptrdiff_t>(kMaxSurfaceBlocks);
+}
+
 SurfacePoints without_loners(SurfacePoints points, double resolution, int threads) {
   CellTable voxels;
   for (const Eigen::Vector3f& p : points) voxels.insert(cell_of(p.cast<double>(), 1.0 / resolution));

@@ -18,6 +18,24 @@ constexpr std::int64_t kMaxCells = 1 << 24;
 
 using Cell = std::pair<std::int32_t, std::int32_t>;  // y, x
 
+Eigen::Vector2i cell_at(const Eigen::Vector2f& p, double cell) {
+  return (p.cast<double>() / cell).array().floor().cast<int>();
+}
+
+constexpr double kFarMetres = 5.0;
+
+/// What to keep along one axis: from the first tenth to the last, and as much again on either side.
+std::pair<float, float> near_range(std::vector<float> values) {
+  const std::size_t tenth = values.size() / 10;
+  std::nth_element(values.begin(), values.begin() + tenth, values.end());
+  const float low = values[tenth];
+  const std::size_t last = values.size() - 1 - tenth;
+  std::nth_element(values.begin(), values.begin() + last, values.end());
+  const float high = values[last];
+  const float reach = std::max(high - low, static_cast<float>(kFarMetres));
+  return {low - reach, high + reach};
+}
+
 Cell column_of(const Eigen::Vector3d& p, double cell) {
   const VoxelIndex v = voxel_of(p, cell);
   return {v.y, v.x};
@@ -50,25 +68,41 @@ std::vector<WallColumn> wall_columns(const AlignMap& map, const Eigen::Matrix3d&
   return out;
 }
 
-WallGrid::WallGrid(const AlignMap& map, const Eigen::Matrix3d& R_upright_map, double cell) {
-  const std::vector<WallColumn> walls = wall_columns(map, R_upright_map, cell);
-  levels_.resize(kLevels);
-  if (walls.empty()) return;
+std::vector<WallColumn> without_far(std::vector<WallColumn> walls) {
+  for (int axis = 0; axis < 2 && !walls.empty(); ++axis) {
+    std::vector<float> values;
+    for (const WallColumn& wall : walls) values.push_back(wall.p[axis]);
+    const auto [low, high] = near_range(std::move(values));
+    std::erase_if(walls, [&](const WallColumn& wall) { return wall.p[axis] < low || wall.p[axis] > high; });
+  }
+  return walls;
+}
+
+/// @return whether the walls take no more cells than there may be.
+bool WallGrid::frame(const std::vector<WallColumn>& walls, double cell) {
   Eigen::Vector2i low = Eigen::Vector2i::Constant(INT32_MAX);
   Eigen::Vector2i high = Eigen::Vector2i::Constant(INT32_MIN);
-  const auto at = [&](const Eigen::Vector2f& p) {
-    return Eigen::Vector2i((p.cast<double>() / cell).array().floor().cast<int>());
-  };
   for (const WallColumn& wall : walls) {
-    low = low.cwiseMin(at(wall.p));
-    high = high.cwiseMax(at(wall.p));
+    low = low.cwiseMin(cell_at(wall.p, cell));
+    high = high.cwiseMax(cell_at(wall.p, cell));
   }
   origin_ = low.array() - 2;
   size_ = high - low + Eigen::Vector2i::Constant(5);
-  if (static_cast<std::int64_t>(size_.x()) * size_.y() > kMaxCells) {
-    size_ = Eigen::Vector2i::Zero();
-    return;
+  return static_cast<std::int64_t>(size_.x()) * size_.y() <= kMaxCells;
+}
+
+WallGrid::WallGrid(const AlignMap& map, const Eigen::Matrix3d& R_upright_map, double cell) {
+  std::vector<WallColumn> walls = wall_columns(map, R_upright_map, cell);
+  levels_.resize(kLevels);
+  if (walls.empty()) return;
+  if (!frame(walls, cell)) {
+    walls = without_far(std::move(walls));
+    if (!frame(walls, cell)) {
+      size_ = Eigen::Vector2i::Zero();
+      return;
+    }
   }
+  const auto at = [&](const Eigen::Vector2f& p) { return cell_at(p, cell); };
   std::vector<float> open(static_cast<std::size_t>(size_.x()) * size_.y(), 0.0F);
   std::vector<std::int8_t> image(open.size(), 0);
   const auto inside = [&](const Eigen::Vector2i& c) {

@@ -20,6 +20,10 @@ struct WallColumn {
 [[nodiscard]] std::vector<WallColumn> wall_columns(const AlignMap& map, const Eigen::Matrix3d& R_upright_map,
                                                    double cell);
 
+/// Without those that stand far off: farther from where eight in ten are, along x or y, than these are apart, and than
+/// 5 m. What was seen through a door or is no wall at all would else make a room as wide as a town.
+[[nodiscard]] std::vector<WallColumn> without_far(std::vector<WallColumn> walls);
+
 /// A picture of a map from above: positive where walls stand, negative where it is open, 0 where nobody looked; with
 /// the largest value of each window of 2^level x 2^level cells, for upper bounds.
 class WallGrid {
@@ -28,6 +32,7 @@ class WallGrid {
   static constexpr int kOpen = -100;
   static constexpr int kLevels = 6;
 
+  /// Over 16 million cells what stands far off is left out; over that still nothing is in it.
   WallGrid(const AlignMap& map, const Eigen::Matrix3d& R_upright_map, double cell);
 
   /// The largest value in [x, x + 2^level) x [y, y + 2^level).
@@ -43,6 +48,7 @@ class WallGrid {
   [[nodiscard]] const Eigen::Vector2i& size() const { return size_; }
 
  private:
+  [[nodiscard]] bool frame(const std::vector<WallColumn>& walls, double cell);
   void make_levels();
 
   Eigen::Vector2i origin_ = Eigen::Vector2i::Zero();  // cells

@@ -34,6 +34,11 @@ bool LayersNode::settled() const {
          });
 }
 
+std::optional<bool> LayersNode::map_is_founded() const {
+  if (!list_) return std::nullopt;
+  return std::ranges::any_of(list_->agents, &AgentState::aligned);
+}
+
 /// Null if there is none and none may begin, there is no room for one more, or none can have this name.
 BrickReceiver* LayersNode::stream_of_channel(const std::string& channel, bool may_begin) {
   const std::string id = channel.substr(kStreamPrefix.size(), channel.rfind('/') - kStreamPrefix.size());

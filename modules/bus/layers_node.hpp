@@ -22,6 +22,8 @@ class LayersNode {
   [[nodiscard]] const AgentLayers& now();
   /// Whoever merge knows to have sent a submap is here, so that who is not here is nowhere; or that takes too long.
   [[nodiscard]] bool settled() const;
+  /// Whether anybody is in the map, be it without a submap; nullopt: merge has not said it yet.
+  [[nodiscard]] std::optional<bool> map_is_founded() const;
 
  private:
   [[nodiscard]] BrickReceiver* stream_of_channel(const std::string& channel, bool may_begin);

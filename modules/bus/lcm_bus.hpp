@@ -30,6 +30,8 @@ class LcmBus final : public Bus {
 
   /// Waits up to `timeout_ms` (less when a timer is due) for messages, handles all that are there, runs due timers.
   void spin_once(int timeout_ms);
+  /// Readable when messages are there: for who waits for other things too.
+  [[nodiscard]] int descriptor() { return lcm_.getFileno(); }
 
  private:
   struct Subscription {

@@ -17,6 +17,7 @@ using wire::bad;
 
 constexpr std::int64_t kMaxLayers = 1000;  ///< as the site file allows agents
 constexpr std::int64_t kMaxLoose = 6;
+constexpr std::int64_t kMaxRivals = 16;
 constexpr std::int64_t kReasonLength = 20;
 Result<std::string> agent_or_map(const std::string& agent) {
   if (agent.empty()) return agent;
@@ -84,6 +85,9 @@ Result<void> check_numbers(const align_result_t& in) {
   if (!std::all_of(std::begin(in.covariance), std::end(in.covariance), [](double c) { return std::isfinite(c); })) {
     return refuse(Code::kNotFinite, "the covariance is not finite");
   }
+  if (!std::all_of(std::begin(in.centre), std::end(in.centre), [](double c) { return std::isfinite(c); })) {
+    return refuse(Code::kNotFinite, "the centre is not finite");
+  }
   if (in.iterations < 0 || in.hypotheses < 0) return refuse(Code::kBadRequest, "a count is negative");
   return {};
 }
@@ -96,6 +100,16 @@ Result<void> check_texts(const align_result_t& in) {
     return refuse(Code::kBadRequest, "an open direction is not printable");
   }
   return {};
+}
+
+Result<std::vector<Transform>> rivals_of(const align_result_t& in) {
+  std::vector<Transform> out;
+  for (const transform_t& rival : in.rivals) {
+    const auto T = wire::from_wire(rival);
+    if (!T) return tl::unexpected(T.error());
+    out.push_back(*T);
+  }
+  return out;
 }
 
 Result<Alignment> evidence_of(const align_result_t& in) {
@@ -114,6 +128,10 @@ Result<Alignment> evidence_of(const align_result_t& in) {
   out.rms = in.rms;
   std::copy(std::begin(in.covariance), std::end(in.covariance), out.covariance.data());
   out.covariance.transposeInPlace();  // row by row there, by columns here
+  out.p_target_centre = Eigen::Vector3d(in.centre[0], in.centre[1], in.centre[2]);
+  auto rivals = rivals_of(in);
+  if (!rivals) return tl::unexpected(rivals.error());
+  out.T_target_source_rivals = std::move(*rivals);
   out.loose = in.loose;
   out.against_upright = in.against_walls;
   out.against_level = in.against_floors;
@@ -133,6 +151,9 @@ void put_evidence(const Alignment& value, align_result_t& out) {
   out.rms = value.rms;
   const Eigen::Matrix<double, 6, 6> by_rows = value.covariance.transpose();
   std::copy_n(by_rows.data(), 36, std::begin(out.covariance));
+  Eigen::Map<Eigen::Vector3d>(out.centre) = value.p_target_centre;
+  out.rival_count = static_cast<std::int32_t>(value.T_target_source_rivals.size());
+  for (const Transform& rival : value.T_target_source_rivals) out.rivals.push_back(wire::to_wire(rival));
   out.loose_count = static_cast<std::int32_t>(value.loose.size());
   out.loose = value.loose;
   out.against_walls = value.against_upright;
@@ -219,7 +240,9 @@ Decoded<AlignResult> decode<AlignResult>(std::span<const std::uint8_t> bytes) {
                                           fixed(1),
                                           text(kReasonLength),
                                           text(wire::kMessageLength),
-                                          fixed(wire::kTransformBytes + 3 * 8 + 36 * 8),
+                                          fixed(wire::kTransformBytes + 3 * 8 + 36 * 8 + 3 * 8),
+                                          count(kMaxRivals),
+                                          array(wire::kTransformBytes),
                                           count(kMaxLoose),
                                           texts(wire::kIdLength),
                                           fixed(3 * 8 + 2 * 4 + 3 * 8)};

@@ -24,7 +24,8 @@ void stop_on_signals() {
 }
 
 void serve(const std::string& process, const Site& site,
-           const std::function<std::shared_ptr<void>(const NodeContext&)>& make) {
+           const std::function<std::shared_ptr<void>(const NodeContext&)>& make,
+           const std::function<void(const std::shared_ptr<void>&, LcmBus&)>& wait) {
   Counters counters;
   LcmBus bus(site.lcm_url, counters);
   const std::int64_t boot_id = bus.now();
@@ -32,7 +33,13 @@ void serve(const std::string& process, const Site& site,
   publish_status_each_second(context);
   const std::shared_ptr<void> node = make(context);
   spdlog::info("serving on {}", site.lcm_url);
-  while (!stop_requested) bus.spin_once(10);
+  while (!stop_requested) {
+    if (wait) {
+      wait(node, bus);
+    } else {
+      bus.spin_once(10);
+    }
+  }
   spdlog::info("stopping");
 }
 
@@ -58,7 +65,8 @@ void publish_status_each_second(const NodeContext& context) {
 
 int run_process(const std::string& process, int argc, char** argv,
                 const std::function<std::shared_ptr<void>(const NodeContext&)>& make,
-                const std::function<void(CLI::App&, Site&)>& add_options) {
+                const std::function<void(CLI::App&, Site&)>& add_options,
+                const std::function<void(const std::shared_ptr<void>&, LcmBus&)>& wait) {
   spdlog::set_pattern("%H:%M:%S.%e " + process + " %^%l%$ %v");
   try {
     // The site file first: the options that follow write over it.
@@ -74,7 +82,7 @@ int run_process(const std::string& process, int argc, char** argv,
     }
     spdlog::info("effective configuration:\n{}", to_yaml(site));
     stop_on_signals();
-    serve(process, site, make);
+    serve(process, site, make, wait);
     return 0;
   } catch (const CLI::ParseError& e) {
     spdlog::error("{}; see --help", e.what());

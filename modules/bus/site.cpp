@@ -115,6 +115,31 @@ Policy read_policy(Section& section, Policy policy) {
   return name == "mean" ? Policy::kMean : Policy::kTable;
 }
 
+std::filesystem::path read_path(Section& section, const char* key, const std::filesystem::path& directory) {
+  std::string path;
+  section.read(key, path);
+  return path.empty() ? std::filesystem::path() : directory / path;
+}
+
+void read_bridge(const YAML::Node& node, const std::filesystem::path& directory, Site::Bridge& bridge) {
+  Section section(node, "bridge");
+  section.read("listen", bridge.listen);
+  section.read("port", bridge.port, std::int64_t{0}, std::int64_t{65535});
+  section.read("tls", bridge.tls);
+  bridge.certificate = read_path(section, "certificate", directory);
+  bridge.key = read_path(section, "key", directory);
+  section.read("origins", bridge.origins);
+  section.read(
+      "local_role", bridge.local_role, [](const std::string& r) { return r == "view" || r == "edit" || r == "robot"; },
+      "view, edit or robot");
+  section.read("max_clients", bridge.max_clients, std::int64_t{1}, std::int64_t{1000});
+  section.done();
+  const bool local = bridge.listen == "127.0.0.1" || bridge.listen == "::1" || bridge.listen == "localhost";
+  if (local || bridge.tls) return;
+  throw ConfigError("bridge.listen " + bridge.listen +
+                    " is reached from other machines: set bridge.tls: true and run concord cert");
+}
+
 /// Whether packets stay on this host. LCM takes the time-to-live from the url, and more than 0 where it has none.
 bool stays_on_host(const std::string& url) {
   if (url.rfind("memq:", 0) == 0 || url.rfind("file:", 0) == 0) return true;
@@ -164,6 +189,7 @@ Site read_site(const YAML::Node& root, const std::filesystem::path& directory) {
       "free_share", site.planner.free_share, [](double share) { return share > 0 && share <= 1; },
       "above 0, at most 1");
   planner.done();
+  read_bridge(top.take("bridge"), directory, site.bridge);
   if (site.planner.zmin >= site.planner.zmax) throw ConfigError("planner.zmin must be below planner.zmax");
 
   top.done();
@@ -215,6 +241,14 @@ std::string to_yaml(const Site& site) {
   root["planner"]["zmin"] = site.planner.zmin;
   root["planner"]["zmax"] = site.planner.zmax;
   root["planner"]["free_share"] = site.planner.free_share;
+  root["bridge"]["listen"] = site.bridge.listen;
+  root["bridge"]["port"] = site.bridge.port;
+  root["bridge"]["tls"] = site.bridge.tls;
+  if (!site.bridge.certificate.empty()) root["bridge"]["certificate"] = site.bridge.certificate.string();
+  if (!site.bridge.key.empty()) root["bridge"]["key"] = site.bridge.key.string();
+  for (const std::string& origin : site.bridge.origins) root["bridge"]["origins"].push_back(origin);
+  root["bridge"]["local_role"] = site.bridge.local_role;
+  root["bridge"]["max_clients"] = site.bridge.max_clients;
   YAML::Emitter out;
   out.SetDoublePrecision(10);
   out << root;

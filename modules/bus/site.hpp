@@ -5,6 +5,7 @@
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "core/policy.hpp"
 
@@ -41,6 +42,17 @@ struct Site {
     double zmin = 0.1, zmax = 1.8;  ///< height band, map z, metres
     double free_share = 0.5;        ///< of the band that must have been observed free
   } planner;
+  /// Headsets and browsers. Beyond loopback only with TLS, and each client then needs a token.
+  struct Bridge {
+    std::string listen = "127.0.0.1";  ///< address; 0.0.0.0 or :: for all
+    std::int64_t port = 8443;          ///< 0: any that is free
+    bool tls = false;
+    std::filesystem::path certificate;  ///< PEM; empty: STATE/bridge/cert.pem, which `concord cert` makes
+    std::filesystem::path key;          ///< PEM; empty: STATE/bridge/key.pem
+    std::vector<std::string> origins;   ///< pages from elsewhere that may connect, e.g. https://lab.example:8080
+    std::string local_role = "edit";    ///< what clients on this machine may do: view, edit or robot
+    std::int64_t max_clients = 64;
+  } bridge;
 
   [[nodiscard]] const AgentConfig& agent(const std::string& id) const {
     const auto it = agents.find(id);

@@ -3,11 +3,12 @@
 #include <chrono>
 #include <filesystem>
 #include <thread>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
 #include "align/align.hpp"
-#include "align/cloud.hpp"
+#include "align/prepare.hpp"
 #include "cli/align_page.hpp"
 #include "cli/align_report.hpp"
 #include "cli/cloud_file.hpp"
@@ -17,19 +18,12 @@ namespace concord {
 namespace {
 
 constexpr double kMeshSpacing = 0.025;  // half a voxel of the finest resolution of a cloud
-/// A map that is too fine or too large to be aligned as it is.
-constexpr double kCoarser[] = {0.05, 0.1, 0.2, 0.4};
-
 int all_threads() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
-
-/// Where the finest that can be aligned is asked for.
-bool wants_coarser(const Error& error) { return error.code == Code::kTooLarge || error.code == Code::kBadResolution; }
 
 /// A file as it was read.
 struct Loaded {
-  std::string file;
   std::optional<OctomapImport> map;
-  PreparedCloud cloud;
+  std::vector<Eigen::Vector3f> cloud;
 };
 
 Result<Loaded> load(const std::string& file) {
@@ -37,24 +31,16 @@ Result<Loaded> load(const std::string& file) {
   if (extension != ".pcd" && extension != ".ply") {
     auto map = load_map(file);
     if (!map) return tl::unexpected(map.error());
-    return Loaded{file, std::move(*map), {}};
+    return Loaded{std::move(*map), {}};
   }
   auto points = read_cloud(file, kMeshSpacing);
   if (!points) return tl::unexpected(points.error());
-  return Loaded{file, std::nullopt, prepare_cloud(std::move(*points))};
+  return Loaded{std::nullopt, std::move(*points)};
 }
 
-Result<AlignMap> prepare(const Loaded& loaded, int threads) {
-  if (!loaded.map) return make_align_map(loaded.cloud.points, loaded.cloud.resolution, threads);
-  auto out = make_align_map(loaded.map->map, loaded.map->resolution, threads);
-  for (const double resolution : kCoarser) {
-    if (out || !wants_coarser(out.error())) break;
-    if (resolution <= loaded.map->resolution) continue;
-    const auto coarse = load_map(loaded.file, resolution);
-    if (!coarse) return tl::unexpected(coarse.error());
-    out = make_align_map(coarse->map, resolution, threads);
-  }
-  return out;
+Result<AlignMap> prepare(Loaded loaded, int threads) {
+  return loaded.map ? prepare_map(loaded.map->map, loaded.map->resolution, threads)
+                    : prepare_map(std::move(loaded.cloud), threads);
 }
 
 Result<void> draw(const AlignFiles& files, const AlignMap& target, const AlignMap& source, const Alignment& found) {
@@ -77,25 +63,24 @@ bool is_alignable_file(const std::string& name) {
 }
 
 Outcome align_files(const AlignFiles& files, const Common& common) {
-  const auto source_file = load(files.source);
+  auto source_file = load(files.source);
   if (!source_file) return fail_on(files.source, source_file.error());
-  const auto target_file = load(files.target);
+  auto target_file = load(files.target);
   if (!target_file) return fail_on(files.target, target_file.error());
   const auto start = std::chrono::steady_clock::now();
   const int threads = all_threads();
-  const auto source = prepare(*source_file, threads);
+  const auto source = prepare(std::move(*source_file), threads);
   if (!source) return fail_on(files.source, source.error());
-  const auto target = prepare(*target_file, threads);
+  const auto target = prepare(std::move(*target_file), threads);
   if (!target) return fail_on(files.target, target.error());
   Alignment found = align(*target, *source, files.T_target_source, threads);
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
   found.ms = took.count();
-  if (!files.picture.empty()) {
-    const auto drawn = draw(files, *target, *source, found);
-    if (!drawn) return fail(drawn.error());
-  }
   common.print(to_json(found), to_words(found));
-  return found.accepted() ? Exit::kDone : Exit::kRefused;
+  const Exit exit = found.accepted() ? Exit::kDone : Exit::kRefused;
+  if (files.picture.empty()) return exit;
+  const auto drawn = draw(files, *target, *source, found);
+  return drawn ? exit : say_undrawn({Exit::kUnusable, name(drawn.error().code), drawn.error().message}, exit);
 }
 
 }  // namespace concord

@@ -2,11 +2,13 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <thread>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
-#include "align/align_map.hpp"
+#include "align/prepare.hpp"
 #include "cli/align_page.hpp"
 #include "cli/align_report.hpp"
 #include "cli/live.hpp"
@@ -74,24 +76,35 @@ tl::expected<Answer, Failure> decide(Live& live, const AlignDecision& decision) 
 
 int all_threads() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
 
-tl::expected<AlignMap, Failure> copy_of(Live& live, const std::string& stream, const std::string& agent) {
+/// Both as they lie before anything is accepted; the map has the source in it too if it is aligned.
+struct Copies {
+  BrickMap target, source;
+};
+
+tl::expected<BrickMap, Failure> copy_of(Live& live, const std::string& stream, const std::string& agent) {
   StreamCopy copy(live, stream);
   const auto synced = agent.empty() ? copy.wait_synced(live) : wait_for_submap(live, copy, agent);
   if (!synced) return tl::unexpected(synced.error());
-  auto map = make_align_map(copy.map(), live.site().resolution, all_threads());
-  if (!map) return fail(map.error());
-  return std::move(*map);
+  return copy.map();
 }
 
-/// Of the submaps as they are now; the map has the source in it too if it is aligned.
-tl::expected<void, Failure> draw(const AlignLive& wanted, const AlignResult& result, const Common& common) {
+tl::expected<Copies, Failure> copy_both(const AlignLive& wanted, const Common& common) {
   Live live(common);
-  const auto source = copy_of(live, "out/agent/" + wanted.source, wanted.source);
+  auto source = copy_of(live, "out/agent/" + wanted.source, wanted.source);
   if (!source) return tl::unexpected(source.error());
-  const bool is_map = wanted.target.empty();
-  const auto target = copy_of(live, is_map ? "out/map" : "out/agent/" + wanted.target, wanted.target);
+  const std::string stream = wanted.target.empty() ? "out/map" : "out/agent/" + wanted.target;
+  auto target = copy_of(live, stream, wanted.target);
   if (!target) return tl::unexpected(target.error());
-  AlignPage page{is_map ? "the map" : wanted.target,
+  return Copies{std::move(*target), std::move(*source)};
+}
+
+tl::expected<void, Failure> draw(const AlignLive& wanted, const Copies& copies, double resolution,
+                                 const AlignResult& result) {
+  const auto source = prepare_map(copies.source, resolution, all_threads());
+  if (!source) return fail(source.error());
+  const auto target = prepare_map(copies.target, resolution, all_threads());
+  if (!target) return fail(target.error());
+  AlignPage page{wanted.target.empty() ? "the map" : wanted.target,
                  wanted.source,
                  result.evidence.message,
                  &*target,
@@ -122,9 +135,9 @@ Outcome align_live(const AlignLive& wanted, const Common& common) {
   if (!result) return tl::unexpected(result.error());
   nlohmann::json object = to_json(*result);
   std::string words = to_words(*result);
-  if (!wanted.picture.empty()) {
-    if (const auto drawn = draw(wanted, *result, common); !drawn) return tl::unexpected(drawn.error());
-  }
+  // A picture that fails keeps nobody from what was found: it is said, and accepted, before anything is drawn.
+  std::optional<tl::expected<Copies, Failure>> copies;
+  if (!wanted.picture.empty()) copies = copy_both(wanted, common);
   if (result->evidence.accepted() && wanted.accept) {
     const AlignDecision decision{live.new_id(), request.author, AlignDecision::Op::kAccept, request.id,
                                  live.bus().now()};
@@ -136,7 +149,11 @@ Outcome align_live(const AlignLive& wanted, const Common& common) {
     words += "\nput it into the map with: concord alignment accept " + result->id;
   }
   common.print(object, words);
-  return result->evidence.accepted() ? Exit::kDone : Exit::kRefused;
+  const Exit exit = result->evidence.accepted() ? Exit::kDone : Exit::kRefused;
+  if (!copies) return exit;
+  const auto drawn =
+      copies->and_then([&](const Copies& both) { return draw(wanted, both, live.site().resolution, *result); });
+  return drawn ? exit : say_undrawn(drawn.error(), exit);
 }
 
 Outcome decide_alignment(const std::string& align_id, bool accept, const std::string& author, const std::string& id,

@@ -1,6 +1,7 @@
 #include "cli/align_report.hpp"
 
 #include <cmath>
+#include <cstdio>
 
 #include "cli/numbers.hpp"
 #include "cli/report.hpp"
@@ -28,9 +29,19 @@ std::string transform_words(const Transform& transform) {
   return out;
 }
 
+std::string rival_words(const Alignment& evidence) {
+  std::string out;
+  for (const Transform& rival : evidence.T_target_source_rivals) {
+    out += "\nor by         --guess \"" + transform_words(rival) + "\"";
+  }
+  return out;
+}
+
 }  // namespace
 
 nlohmann::json to_json(const Alignment& evidence) {
+  nlohmann::json rivals = nlohmann::json::array();
+  for (const Transform& rival : evidence.T_target_source_rivals) rivals.push_back(to_numbers(rival));
   return {{"accepted", evidence.accepted()},
           {"reason", name(evidence.reason)},
           {"message", evidence.message},
@@ -40,6 +51,8 @@ nlohmann::json to_json(const Alignment& evidence) {
           {"overlap_target", evidence.overlap_target},
           {"rms_m", evidence.rms},
           {"covariance", row_by_row(evidence.covariance)},
+          {"centre", {evidence.p_target_centre.x(), evidence.p_target_centre.y(), evidence.p_target_centre.z()}},
+          {"rivals", rivals},
           {"sigma_m", shift_sigmas(evidence)},
           {"degenerate", evidence.loose},
           {"against_walls", evidence.against_upright},
@@ -61,7 +74,8 @@ std::string to_words(const Alignment& evidence) {
          " mm along x, y, z\nagainst       " + percent(evidence.against_upright) + " of walls, " +
          percent(evidence.against_level) + " of floors, " + percent(evidence.free_space_violation) +
          " stands in free space\ntook          " + format_number(evidence.ms, 0) + " ms, " +
-         std::to_string(evidence.hypotheses) + " places, " + std::to_string(evidence.iterations) + " iterations";
+         std::to_string(evidence.hypotheses) + " places, " + std::to_string(evidence.iterations) + " iterations" +
+         rival_words(evidence);
 }
 
 nlohmann::json to_json(const AlignResult& result) {
@@ -80,6 +94,11 @@ nlohmann::json to_json(const AlignResult& result) {
               {"slip_m", result.slip},
               {"slip_rad", result.slip_angle}});
   return out;
+}
+
+Exit say_undrawn(const Failure& failure, Exit verdict) {
+  std::fprintf(stderr, "concord: no picture: %s (%s)\n", failure.message.c_str(), failure.code.c_str());
+  return verdict == Exit::kDone ? failure.exit : verdict;
 }
 
 std::string pair_of(const AlignResult& result) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <exception>
 #include <fstream>
 #include <sstream>
@@ -187,19 +188,54 @@ Result<std::vector<Eigen::Vector3f>> finite_points(const fs::path& file, const C
   return out;
 }
 
-Result<std::vector<Eigen::Vector3f>> read_pcd(const fs::path& file) {
+using Field = pcl::PCLPointField;
+
+const Field* field_of(const pcl::PCLPointCloud2& points, const char* name) {
+  const auto it =
+      std::find_if(points.fields.begin(), points.fields.end(), [&](const Field& f) { return f.name == name; });
+  return it == points.fields.end() ? nullptr : &*it;
+}
+
+/// PCL's own conversion takes fields of other types for absent ones: many tools write doubles.
+Result<Cloud> cloud_of(const fs::path& file, const pcl::PCLPointCloud2& points) {
+  const Field* axes[] = {field_of(points, "x"), field_of(points, "y"), field_of(points, "z")};
   Cloud cloud;
-  if (pcl::io::loadPCDFile(file.string(), cloud) != 0) return malformed(file, "PCL cannot read it");
-  return finite_points(file, cloud);
+  cloud.resize(static_cast<std::size_t>(points.width) * points.height);
+  for (int axis = 0; axis < 3; ++axis) {
+    const Field* field = axes[axis];
+    if (field == nullptr) return malformed(file, "its points have no x, y and z");
+    const bool is_double = field->datatype == Field::FLOAT64;
+    if (!is_double && field->datatype != Field::FLOAT32) return malformed(file, "x, y and z must be float or double");
+    const std::size_t end = field->offset + (is_double ? sizeof(double) : sizeof(float));
+    if (end > points.point_step || cloud.size() * points.point_step > points.data.size()) {
+      return malformed(file, "it holds less than its header says");
+    }
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      const std::uint8_t* at = points.data.data() + i * points.point_step + field->offset;
+      double wide = 0.0;
+      float narrow = 0.0F;
+      is_double ? std::memcpy(&wide, at, sizeof wide) : std::memcpy(&narrow, at, sizeof narrow);
+      cloud[i].data[axis] = is_double ? static_cast<float>(wide) : narrow;
+    }
+  }
+  return cloud;
+}
+
+Result<std::vector<Eigen::Vector3f>> read_pcd(const fs::path& file) {
+  pcl::PCLPointCloud2 points;
+  if (pcl::io::loadPCDFile(file.string(), points) != 0) return malformed(file, "PCL cannot read it");
+  const auto cloud = cloud_of(file, points);
+  if (!cloud) return tl::unexpected(cloud.error());
+  return finite_points(file, *cloud);
 }
 
 Result<std::vector<Eigen::Vector3f>> read_ply(const fs::path& file, double spacing) {
   pcl::PolygonMesh mesh;
   if (pcl::io::loadPLYFile(file.string(), mesh) < 0) return malformed(file, "PCL cannot read it");
-  Cloud cloud;
-  pcl::fromPCLPointCloud2(mesh.cloud, cloud);
-  if (mesh.polygons.empty()) return finite_points(file, cloud);
-  return sampled(file, cloud, mesh.polygons, spacing);
+  const auto cloud = cloud_of(file, mesh.cloud);
+  if (!cloud) return tl::unexpected(cloud.error());
+  if (mesh.polygons.empty()) return finite_points(file, *cloud);
+  return sampled(file, *cloud, mesh.polygons, spacing);
 }
 
 }  // namespace

@@ -98,6 +98,8 @@ void add_downsample(Program& program);
 void add_publish(Program& program);
 /// map, digest.
 void add_map(Program& program);
+/// token, cert: who may come in through the bridge, and how it proves who it is.
+void add_bridge_access(Program& program);
 void add_up(Program& program);
 void add_demo(Program& program);
 

@@ -79,9 +79,10 @@ DemoRun::Step DemoRun::tell() {
 
 void DemoRun::show() {
   const std::filesystem::path page = std::filesystem::absolute(options_.out / "index.html");
-  say("page: file://" + page.string());
+  say("report: file://" + page.string());
+  say("the map: " + person_->page());
   if (isatty(STDIN_FILENO) == 0) return;
-  say("the stack goes on until Ctrl-C; try: ./run concord status, ./run spy");
+  say("the stack goes on until Ctrl-C; open the map in a browser, or try ./run concord status, ./run spy");
   while (!end_requested()) live_->wait(0.5, end_requested);
 }
 

@@ -85,15 +85,25 @@ DemoRun::Step DemoRun::start() {
 
   const fs::path log = folder_.log();
   const Site& site = live_->site();
-  auto started = start_stack(supervisor_, {common_.site_file, site.lcm_url, site.state, log, folder_.output()});
+  auto started = start_stack(supervisor_, {common_.site_file, site.lcm_url, site.state, log, folder_.output(), true});
   if (!started) return not_started(started.error());
   stack_lock_ = std::move(*started);
   const auto up = wait_for("the processes to start", kStart, [&] {
-    return nonempty(log) && std::ranges::all_of(kStackProcesses, [&](const char* p) { return watch_->runs(p); });
+    return nonempty(log) && watch_->runs("hmd-bridge") &&
+           std::ranges::all_of(kStackProcesses, [&](const char* p) { return watch_->runs(p); });
   });
-  if (up) say("ingest, merge and planner run; lcm-logger writes " + log.string());
+  if (!up) return up;
+  say("ingest, merge, align, planner and the headsets' bridge run; lcm-logger writes " + log.string());
   took("start", since);
-  return up;
+  return enter_bridge();
+}
+
+DemoRun::Step DemoRun::enter_bridge() {
+  auto person = DemoPerson::enter(*live_, scene_.author);
+  if (!person) return tl::unexpected(person.error());
+  person_ = std::move(*person);
+  say("look, and take part: " + person_->page());
+  return {};
 }
 
 DemoRun::Step DemoRun::send() {
@@ -166,9 +176,7 @@ void DemoRun::say_progress() const {
 DemoRun::Step DemoRun::align(const AgentState& state) {
   const auto agent = std::ranges::find(scene_.agents, state.id, &DemoAgent::id);
   if (agent == scene_.agents.end()) return {};
-  const TransformRequest request{live_->new_id(), scene_.author, state.id, state.frame_id, agent->T_map_agent};
-  const auto answer = live_->ask("in/transform", request);
-  if (!answer) return tl::unexpected(answer.error());
+  if (const Step placed = person_->place(state.id, agent->T_map_agent); !placed) return placed;
   say(state.id + " is aligned where it is known to have started");
   watch_->note_aligned(state.id, agent->T_map_agent);
   return {};
@@ -250,13 +258,7 @@ DemoRun::Step DemoRun::edit() {
   before_edit_ = copies_->map.map();
   if (scene_.edit.empty()) return {};
   const double since = now();
-  EditRequest request;
-  request.id = live_->new_id();
-  request.author = scene_.author;
-  request.shape = VoxelList{scene_.resolution, to_boxes(scene_.edit)};
-  request.utime = live_->bus().now();
-  const auto answer = live_->ask("in/edit", request);
-  if (!answer) return tl::unexpected(answer.error());
+  if (const Step added = person_->add(scene_.edit, scene_.resolution); !added) return added;
   const auto shown = wait_for("the edit in the map", kSync, [this] {
     return std::ranges::all_of(scene_.edit, [&](const VoxelIndex& v) {
       const LogOdds value = copies_->map.map().at(v);

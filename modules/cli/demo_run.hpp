@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "cli/demo_folder.hpp"
+#include "cli/demo_person.hpp"
 #include "cli/demo_report.hpp"
 #include "cli/demo_scene.hpp"
 #include "cli/demo_score.hpp"
@@ -32,6 +33,7 @@ class DemoRun {
 
   Step prepare();
   Step start();
+  Step enter_bridge();
   Step send();
   Step follow_mapping();
   Step plan_before();
@@ -68,6 +70,7 @@ class DemoRun {
   std::unique_ptr<Live> live_;
   std::unique_ptr<Copies> copies_;
   std::unique_ptr<DemoWatch> watch_;
+  std::unique_ptr<DemoPerson> person_;
   std::string active_path_;  ///< the request that is kept up to date
   std::vector<MappingMoment> moments_;
   BrickMap before_edit_;

@@ -86,6 +86,9 @@ Site demo_site(const DemoScene& scene, Site site, const std::filesystem::path& s
   site.resolution = scene.resolution;
   site.planner.zmin = scene.zmin;
   site.planner.zmax = scene.zmax;
+  site.bridge = {};
+  site.bridge.port = 0;  // wherever there is room
+  site.bridge.local_role = "robot";
   for (const DemoAgent& agent : scene.agents) {
     AgentConfig config = site.unlisted;
     config.kind = agent.kind;

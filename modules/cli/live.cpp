@@ -107,15 +107,21 @@ tl::expected<Answer, Failure> Live::ask_bytes(const std::string& channel, const 
   return answer;
 }
 
+StreamCopy::Copied::Copied(Live& live, const std::string& stream)
+    : receiver(live.bus(), live.counters(), {.stream = stream, .resolution = live.site().resolution},
+               {.on_frame = [this](const std::string&) { map.clear(); },
+                .on_brick = [this](BrickIndex index, Brick brick) { map.set(index, std::move(brick)); },
+                .on_end = [this] { map.clear(); }}) {}
+
 StreamCopy::StreamCopy(Live& live, const std::string& stream)
-    : stream_(stream),
-      receiver_(live.bus(), live.counters(), {.stream = stream, .resolution = live.site().resolution},
-                {.on_frame = [this](const std::string&) { map_.clear(); },
-                 .on_brick = [this](BrickIndex index, Brick brick) { map_.set(index, std::move(brick)); },
-                 .on_end = [this] { map_.clear(); }}) {
+    : stream_(stream), copied_(std::make_shared<Copied>(live, stream)) {
   const StreamChannels channels(stream);
-  live.hear<BrickPacket>(channels.bricks, [this](const std::string&, const BrickPacket& p) { receiver_.on_packet(p); });
-  live.hear<BrickDigest>(channels.digest, [this](const std::string&, const BrickDigest& d) { receiver_.on_digest(d); });
+  live.hear<BrickPacket>(channels.bricks, [copied = copied_](const std::string&, const BrickPacket& packet) {
+    copied->receiver.on_packet(packet);
+  });
+  live.hear<BrickDigest>(channels.digest, [copied = copied_](const std::string&, const BrickDigest& digest) {
+    copied->receiver.on_digest(digest);
+  });
 }
 
 tl::expected<void, Failure> StreamCopy::wait_synced(Live& live, const std::function<bool()>& worth_it) {

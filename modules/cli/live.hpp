@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -105,13 +106,13 @@ class StreamCopy {
  public:
   StreamCopy(Live& live, const std::string& stream);
 
-  [[nodiscard]] bool synced() const { return receiver_.heard() && receiver_.synced(); }
-  [[nodiscard]] bool heard() const { return receiver_.heard(); }
-  [[nodiscard]] std::int64_t missing() const { return receiver_.missing(); }
-  [[nodiscard]] std::int64_t revision() const { return receiver_.revision(); }
-  [[nodiscard]] const BrickMap& map() const { return map_; }
+  [[nodiscard]] bool synced() const { return copied_->receiver.heard() && copied_->receiver.synced(); }
+  [[nodiscard]] bool heard() const { return copied_->receiver.heard(); }
+  [[nodiscard]] std::int64_t missing() const { return copied_->receiver.missing(); }
+  [[nodiscard]] std::int64_t revision() const { return copied_->receiver.revision(); }
+  [[nodiscard]] const BrickMap& map() const { return copied_->map; }
   /// In sync with a sender that has ended.
-  [[nodiscard]] bool ended() const { return synced() && receiver_.frame_id().empty(); }
+  [[nodiscard]] bool ended() const { return synced() && copied_->receiver.frame_id().empty(); }
 
   /// Waits while `worth_it()`. Fails with kNoAnswer when nobody speaks, with kIncomplete when it did not arrive whole
   /// in time.
@@ -119,9 +120,14 @@ class StreamCopy {
       Live& live, const std::function<bool()>& worth_it = [] { return true; });
 
  private:
-  BrickMap map_;
+  /// What the bus goes on filling: it outlives this copy where its `Live` does.
+  struct Copied {
+    Copied(Live& live, const std::string& stream);
+    BrickMap map;
+    BrickReceiver receiver;
+  };
   std::string stream_;
-  BrickReceiver receiver_;
+  std::shared_ptr<Copied> copied_;
 };
 
 /// Waits for an agent's submap. Fails as StreamCopy::wait_synced does, and soon (kRefused) where there is none to wait

@@ -36,6 +36,7 @@ int main(int argc, char** argv) {
   concord::add_assets(program);
   concord::add_things(program);
   concord::add_detect(program);
+  concord::add_bridge_access(program);
   concord::add_up(program);
   concord::add_demo(program);
   concord::add_replay(program);

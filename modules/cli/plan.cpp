@@ -1,13 +1,16 @@
 #include <memory>
 #include <optional>
 
+#include <nlohmann/json.hpp>
+
 #include "cli/arguments.hpp"
 #include "cli/command.hpp"
-#include "cli/grid_file.hpp"
 #include "cli/live.hpp"
 #include "cli/map_file.hpp"
 #include "cli/numbers.hpp"
 #include "cli/overview.hpp"
+#include "cli/plan_footprint.hpp"
+#include "cli/plan_ground.hpp"
 #include "cli/plan_scenario.hpp"
 #include "cli/report.hpp"
 #include "planner/plan.hpp"
@@ -16,8 +19,9 @@ namespace concord {
 namespace {
 
 struct Options {
-  std::string map, grid, robot, from, to, out;
-  ScenarioOptions scenario;
+  std::string map, grid, robot, from, to, out, paths, footprint;
+  std::optional<double> turn_radius;  ///< metres
+  std::string scenario;
   bool any_angle = false, clearance = false;
   std::vector<double> band;
   std::optional<double> radius;  ///< metres
@@ -52,24 +56,9 @@ Terms terms_of(const Options& options, const Site& site) {
           options.radius.value_or(site.unlisted.radius), site.planner.free_share};
 }
 
-/// What a path is planned on: `map` is what the picture shows, `origin` where its frame lies in that of the request.
-struct Ground2D {
-  Grid grid;
-  BrickMap map;
-  Eigen::Vector2d origin = Eigen::Vector2d::Zero();
-};
-
 Result<Ground2D> load_ground(const Options& options, const Terms& terms) {
-  if (!options.grid.empty()) {
-    auto loaded = load_grid(options.grid);
-    if (!loaded) return tl::unexpected(loaded.error());
-    return Ground2D{std::move(loaded->grid), std::move(loaded->cells), loaded->origin};
-  }
-  auto loaded = load_map(options.map);
-  if (!loaded) return tl::unexpected(loaded.error());
-  auto grid = project_map(loaded->map, loaded->resolution, terms.zmin, terms.zmax, terms.free_share);
-  if (!grid) return tl::unexpected(grid.error());
-  return Ground2D{std::move(*grid), std::move(loaded->map)};
+  return options.grid.empty() ? ground_of_map(options.map, terms.zmin, terms.zmax, terms.free_share)
+                              : ground_of_grid(options.grid);
 }
 
 Result<void> draw(const Options& options, const Terms& terms, const Ground2D& ground, const Ends& ends,
@@ -100,6 +89,19 @@ Path to_path(PlanResult result, double floor) {
   return path;
 }
 
+/// For other people's validators.
+std::string to_line(const Path& path, double radius) {
+  nlohmann::json line{{"query", 0}, {"status", path.status}, {"radius", radius}};
+  if (path.status == "OK") {
+    nlohmann::json points = nlohmann::json::array();
+    for (const Eigen::Vector3d& p : path.points) points.push_back({p.x(), p.y()});
+    line["length"] = path.length;
+    line["least_clearance"] = path.least_clearance;
+    line["points"] = std::move(points);
+  }
+  return line.dump() + '\n';
+}
+
 Outcome plan_on_file(const Options& options, const Ends& ends, const Common& common) {
   if (!ends.from) return fail(Exit::kUnusable, "USAGE", "on a file plan needs --from");
   const Terms terms = terms_of(options, common.site());
@@ -108,6 +110,10 @@ Outcome plan_on_file(const Options& options, const Ends& ends, const Common& com
   PlanResult result = plan(ground->grid, *ends.from - ground->origin, ends.to - ground->origin, terms.radius);
   for (Eigen::Vector2d& p : result.points) p += ground->origin;
   const Path path = to_path(std::move(result), terms.zmin);
+  if (!options.paths.empty()) {
+    const auto written = write_file(options.paths, to_line(path, terms.radius));
+    if (!written) return fail(written.error());
+  }
   if (!options.out.empty()) {
     const auto drawn = draw(options, terms, *ground, ends, path);
     if (!drawn) return fail(drawn.error());
@@ -115,21 +121,40 @@ Outcome plan_on_file(const Options& options, const Ends& ends, const Common& com
   return print_path(path, common);
 }
 
+Outcome plan_for_footprint(const Options& options, const Common& common) {
+  if (options.from.empty() || options.to.empty())
+    return fail(Exit::kUnusable, "USAGE", "a path for a footprint needs --from and --to");
+  const Terms terms = terms_of(options, common.site());
+  const auto ground = load_ground(options, terms);
+  if (!ground) return fail(ground.error());
+  FootprintOptions asked{options.from,
+                         options.to,
+                         options.footprint,
+                         options.turn_radius.value_or(0),
+                         options.paths,
+                         options.out,
+                         options.grid.empty() ? options.map : options.grid,
+                         terms.zmax};
+  return plan_footprint(asked, *ground, common);
+}
+
 Outcome plan_queries(const Options& options, const Common& common) {
-  ScenarioOptions scenario = options.scenario;
-  scenario.map = options.map;
+  ScenarioOptions scenario{options.map, options.scenario, options.paths};
   if (options.any_angle) scenario.method = Method::kAnyAngle;
   if (options.clearance) scenario.method = Method::kClearance;
   return plan_scenario(scenario, common);
 }
 
 Outcome plan_command(const Options& options, const Common& common) {
-  if (!options.scenario.scenario.empty()) return plan_queries(options, common);
+  if (!options.scenario.empty()) return plan_queries(options, common);
+  if (!options.footprint.empty()) return plan_for_footprint(options, common);
   if (options.to.empty()) return fail(Exit::kUnusable, "USAGE", "plan needs --to, or --map M.map --scen S.scen");
   const auto ends = parse_ends(options);
   if (!ends) return fail(ends.error());
   if (!options.map.empty() || !options.grid.empty()) return plan_on_file(options, *ends, common);
-  if (!options.out.empty()) return fail(Exit::kUnusable, "USAGE", "--out needs --map FILE or --grid FILE");
+  if (!options.out.empty() || !options.paths.empty()) {
+    return fail(Exit::kUnusable, "USAGE", "--picture and --paths need --map FILE or --grid FILE");
+  }
   if (options.robot.empty()) return fail(Exit::kUnusable, "USAGE", "plan needs --map FILE, --grid FILE or --robot ID");
   PathRequest request;
   request.robot = options.robot;
@@ -143,13 +168,13 @@ Outcome plan_command(const Options& options, const Common& common) {
 
 void add_plan(Program& program) {
   auto options = std::make_shared<Options>();
-  CLI::App& command = program.add("plan", "a path for a round robot: on a map file, or from the running planner",
+  CLI::App& command = program.add("plan", "a path: on a map file, or from the running planner",
                                   [options](const Common& common) { return plan_command(*options, common); });
   auto* map = command.add_option("--map", options->map, ".bt or .ot; with --scen a .map of movingai.com");
   auto* grid = command.add_option("--grid", options->grid, "map_server's .yaml")->excludes(map);
   auto* scenario =
-      command.add_option("--scen", options->scenario.scenario, "asks all queries of a .scen, times them")->needs(map);
-  command.add_option("--paths", options->scenario.paths, "writes the paths found, one JSON a line")->needs(scenario);
+      command.add_option("--scen", options->scenario, "asks all queries of a .scen, times them")->needs(map);
+  command.add_option("--paths", options->paths, "writes the paths found, one JSON a line; with --map or --grid");
   auto* any_angle = command.add_flag("--any-angle", options->any_angle, "the shortest at any angle")->needs(scenario);
   command.add_flag("--clearance", options->clearance, "keeping away from walls")->needs(scenario)->excludes(any_angle);
   command.add_option("--robot", options->robot, "the robot whose pose and radius the planner uses")
@@ -161,9 +186,16 @@ void add_plan(Program& program) {
   command.add_option("--from", options->from, "\"x y\" or \"x y yaw\"; without it the robot's last pose")
       ->excludes(scenario);
   command.add_option("--to", options->to, "\"x y\" or \"x y yaw\", map frame, metres")->excludes(scenario);
-  command.add_option("--radius", options->radius, "of the robot, metres; without it the site file's")
-      ->check(kRobotRadius);
-  command.add_option("--out", options->out, "writes a picture (.png); with --map or --grid")->excludes(scenario);
+  auto* radius = command.add_option("--radius", options->radius, "of the robot, metres; without it the site file's")
+                     ->check(kRobotRadius);
+  auto* footprint =
+      command.add_option("--footprint", options->footprint,
+                         "\"1.2x0.8\" or corners \"x y, x y, x y\", metres, x ahead; with --map or --grid");
+  footprint->excludes(radius)->excludes(scenario)->excludes("--robot");
+  command.add_option("--turn-radius", options->turn_radius, "metres; without it the footprint turns in place")
+      ->needs(footprint);
+  command.add_option("--out,--picture", options->out, "writes a picture (.png); with --map or --grid")
+      ->excludes(scenario);
 }
 
 }  // namespace concord

@@ -26,7 +26,9 @@ Result<FileLock> start_stack(Supervisor& supervisor, const StackSpec& spec) {
                                            .restart = false});
     if (!started) return tl::unexpected(started.error());
   }
-  for (const std::string name : kStackProcesses) {
+  std::vector<std::string> names(std::begin(kStackProcesses), std::end(kStackProcesses));
+  if (spec.bridge) names.emplace_back("hmd-bridge");
+  for (const std::string& name : names) {
     std::vector<std::string> command = {program_folder() / ("concord-" + name)};
     if (!spec.site_file.empty()) command.insert(command.end(), {"--site", spec.site_file});
     const auto started = supervisor.start({.name = name, .command = command, .output = output_of(spec, name)});

@@ -18,6 +18,7 @@ struct StackSpec {
   std::filesystem::path state;
   std::filesystem::path log;     ///< of everything said on the bus; empty: none
   std::filesystem::path output;  ///< folder for what each process prints; empty: on screen
+  bool bridge = false;           ///< whether headsets and browsers may come in
 };
 
 /// Starts the stock logger, if asked for, and then the stack's processes under `supervisor`.

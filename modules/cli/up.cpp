@@ -12,7 +12,7 @@ Outcome up(const std::string& log, const Common& common) {
   const Site site = common.site();
   end_on_signals();
   Supervisor supervisor([](const std::string& line) { std::fprintf(stderr, "concord: %s\n", line.c_str()); });
-  const auto started = start_stack(supervisor, {common.site_file, site.lcm_url, site.state, log, {}});
+  const auto started = start_stack(supervisor, {common.site_file, site.lcm_url, site.state, log, {}, true});
   if (!started) return not_started(started.error());
   while (!end_requested() && !supervisor.unusable()) supervisor.wait(std::chrono::milliseconds(500));
   if (const auto name = supervisor.unusable()) {

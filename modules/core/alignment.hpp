@@ -58,9 +58,12 @@ struct Alignment {
   Transform T_target_source = Transform::Identity();  ///< the best that was found, accepted or not
   double overlap_source = 0.0;                        ///< share of the source's flat surface that lies on the target's
   double overlap_target = 0.0;
-  double rms = 0.0;  ///< metres across the surface, of the pairs that the kernel trusts
-  /// Of a small turn (rad) and shift (m) in the target's axes, about the middle of the pairs.
+  double rms = 0.0;  ///< metres across the flat surface, of the pairs as far as the kernel trusts them
+  /// Of a small turn (rad) about `p_target_centre` and a shift (m), in the target's axes.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Vector3d p_target_centre = Eigen::Vector3d::Zero();  ///< about the middle of the pairs
+  /// Where AMBIGUOUS: the other places that explain the maps as well. Each is found by a guess near it.
+  std::vector<Transform> T_target_source_rivals;
   std::vector<std::string> loose;     ///< directions that the surfaces leave open, e.g. "slides along x (...)"
   double against_upright = 0.0;       ///< of the walls that the other map can speak of: the share it speaks against
   double against_level = 0.0;         ///< the same of floors and ceilings

@@ -22,21 +22,6 @@ T take(Result<T> result, const std::string& what) {
   return std::move(*result);
 }
 
-Eigen::Vector3d middle_of(const Scene& scene) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  double count = 0.0;
-  if (!scene.points.empty()) {
-    for (const Eigen::Vector3f& p : scene.points) sum += p.cast<double>();
-    return sum / static_cast<double>(scene.points.size());
-  }
-  for (const BrickIndex b : scene.map.sorted_bricks()) {
-    const double n = scene.map.find(b)->occupied_count();
-    sum += n * centre_of(voxel_at(b, 0), scene.resolution);
-    count += n;
-  }
-  return sum / std::max(count, 1.0);
-}
-
 Transform read_transform(const fs::path& file) {
   std::ifstream in(file);
   Eigen::Matrix4d m;
@@ -75,6 +60,21 @@ Scene mapped(const Scene& scene, Move&& move) {
 }
 
 }  // namespace
+
+Eigen::Vector3d middle_of(const Scene& scene) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double count = 0.0;
+  if (!scene.points.empty()) {
+    for (const Eigen::Vector3f& p : scene.points) sum += p.cast<double>();
+    return sum / static_cast<double>(scene.points.size());
+  }
+  for (const BrickIndex b : scene.map.sorted_bricks()) {
+    const double n = scene.map.find(b)->occupied_count();
+    sum += n * centre_of(voxel_at(b, 0), scene.resolution);
+    count += n;
+  }
+  return sum / std::max(count, 1.0);
+}
 
 std::uint64_t Random::next() {
   std::uint64_t z = state_ += 0x9E3779B97F4A7C15ULL;

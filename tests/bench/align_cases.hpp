@@ -52,6 +52,8 @@ struct Pair {
 [[nodiscard]] Scene moved(const Scene& scene, const Transform& T_new_old);
 [[nodiscard]] Scene mirrored(const Scene& scene);
 
+[[nodiscard]] Eigen::Vector3d middle_of(const Scene& scene);
+
 /// The truth, wrong by up to 2 m on each axis, 45 degrees of yaw and 5 of roll and pitch; turned about the source's
 /// origin, or about its middle.
 [[nodiscard]] Transform rough_guess(const Pair& pair, Random& random);

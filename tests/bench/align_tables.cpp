@@ -43,6 +43,19 @@ Pair without_truth(Pair pair) {
   return pair;
 }
 
+/// Two that have nothing in common, with the source laid over the target, middle over middle and turned by a multiple
+/// of 90 degrees beside `T_target_source`: where whoever takes one for the other would put it.
+Pair laid_over(Pair pair, Random& random) {
+  const double quarters = std::floor(random.uniform(0.0, 4.0));
+  Transform T = Transform::Identity();
+  T.translate(middle_of(pair.target));
+  T.rotate(Eigen::AngleAxisd(0.5 * M_PI * quarters, Eigen::Vector3d::UnitZ()) *
+           Eigen::Quaterniond(pair.T_target_source.linear()));
+  T.translate(Eigen::Vector3d(-middle_of(pair.source)));
+  pair.T_target_source = T;
+  return pair;
+}
+
 Scene with_outliers(const Scene& scene, double share, Random& random) {
   Eigen::Vector3f low = scene.points.front();
   Eigen::Vector3f high = low;
@@ -95,9 +108,11 @@ void add_shelf(Scene& scene, const Eigen::Vector3d& p) {
   }
 }
 
-Scene part_of(const std::vector<Scene>& rooms, std::size_t i, bool is_mirrored, Random& random) {
-  const Scene& room = rooms[i % rooms.size()];
-  return cut_in_two(is_mirrored ? mirrored(room) : room, random.uniform(0.3, 1.0), kNoise, random).source;
+/// A part of a room as the first, of another (or of its mirror image) as the second, walls along walls.
+Pair of_two_rooms(const Scene& first, const Scene& second, Random& random) {
+  const Pair a = cut_in_two(first, random.uniform(0.3, 1.0), kNoise, random);
+  const Pair b = cut_in_two(second, random.uniform(0.3, 1.0), kNoise, random);
+  return laid_over({"", a.target, b.source, b.T_target_source, 0.15, 0.0}, random);
 }
 
 /// Walls of a corridor along x, from `begin` to `end` metres, 2 x 2.5 m, with a door frame every `period` metres.
@@ -211,48 +226,38 @@ Table never_fooled(const std::vector<Scene>& rooms, const std::vector<Pair>& pai
   Table out;
   Random random(4);
   int asked = 0;
-  const auto try_one = [&](const std::string& what, const Pair& pair) {
-    const AlignMap target = prepared(pair.target, threads);
-    const AlignMap source = prepared(pair.source, threads);
-    ask(pair, target, source, {}, threads, out[what + ", no guess"]);
-    ask(pair, target, source, rough_guess(pair, random), threads, out[what + ", guess"]);
+  const auto try_one = [&](const std::string& what, const Pair& guessed, const Pair& judged) {
+    const AlignMap target = prepared(guessed.target, threads);
+    const AlignMap source = prepared(guessed.source, threads);
+    ask(judged, target, source, {}, threads, out[what + ", no guess"]);
+    ask(judged, target, source, rough_guess(guessed, random), threads, out[what + ", guess"]);
     asked += 2;
+  };
+  const auto try_unrelated = [&](const std::string& what, const Pair& pair) {
+    try_one(what, pair, without_truth(pair));
   };
   for (std::size_t i = 0; asked < requests; ++i) {
     if (!rooms.empty()) {
-      const Scene first = part_of(rooms, i, false, random);
-      const auto unrelated = [&](const Scene& second) {
-        Pair pair{"", first, second, Transform::Identity(), 0.15, 0.0};
-        Pair judged = without_truth(pair);
-        return std::pair(pair, judged);
-      };
-      const auto try_unrelated = [&](const std::string& what, const Scene& second) {
-        // The guess is about the identity: the rooms lie over each other.
-        const auto [pair, judged] = unrelated(second);
-        const AlignMap target = prepared(pair.target, threads);
-        const AlignMap source = prepared(pair.source, threads);
-        ask(judged, target, source, {}, threads, out[what + ", no guess"]);
-        ask(judged, target, source, rough_guess(pair, random), threads, out[what + ", guess"]);
-        asked += 2;
-      };
-      try_unrelated("wrong room", part_of(rooms, i + 1 + i / 3 % 2, false, random));
-      try_unrelated("mirrored room", part_of(rooms, i, true, random));
-      try_one("two ends of a room", cut_in_two(rooms[i % rooms.size()], 0.0, kNoise, random));
+      const Scene& room = rooms[i % rooms.size()];
+      try_unrelated("wrong room", of_two_rooms(room, rooms[(i + 1 + i / 3 % 2) % rooms.size()], random));
+      try_unrelated("mirrored room", of_two_rooms(room, mirrored(room), random));
+      const Pair ends = cut_in_two(room, 0.0, kNoise, random);
+      try_one("two ends of a room", ends, ends);
     }
     Pair halls{"", corridor(0.0, 12.0, 1e9, random), corridor(random.uniform(2.0, 6.0), 16.0, 1e9, random), {}, 0.15,
                0.6};
     halls.T_target_source = Transform::Identity();
-    try_one("plain corridor", halls);
+    try_one("plain corridor", halls, halls);
     const double period = random.uniform(1.5, 3.0);
     halls.target = corridor(0.0, 12.0, period, random);
     halls.source = corridor(random.uniform(2.0, 6.0), 16.0, period, random);
-    try_one("corridor with door frames", halls);
+    try_one("corridor with door frames", halls, halls);
     if (i % 10 == 0) {
       for (std::size_t p = 0; p + 1 < pairs.size(); ++p) {
         Pair wrong = pairs[p];
         wrong.source = pairs[p + 1].source;
         if (pairs[p].name.substr(0, 4) == pairs[p + 1].name.substr(0, 4)) continue;
-        try_one("wrong building", without_truth(wrong));
+        try_unrelated("wrong building", laid_over(wrong, random));
       }
     }
   }

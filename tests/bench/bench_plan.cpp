@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "planner/scenario/scenario.hpp"
+#include "pose_figures.hpp"
 #include "replan_figures.hpp"
 
 namespace concord {
@@ -228,6 +229,41 @@ json bench(const fs::path& data, const std::string& folder, const std::string& w
   return figures;
 }
 
+/// A robot of 1.2 x 0.8 m that turns with 0.4 m, twenty queries of each building.
+json bench_poses(const fs::path& data, bool quiet) {
+  constexpr double kTurnRadius = 0.4;
+  std::size_t queries = 0, solved = 0, violations = 0, sampled = 0;
+  std::vector<double> ms, check_ms, startup_ms;
+  json maps;
+  for (const PoseCase& c : pose_cases(data, 20)) {
+    const PoseFigures f = pose_figures(c, kTurnRadius);
+    maps[c.name] = {{"se2_queries", c.queries.size()},          {"se2_solved", f.solved},
+                    {"se2_violations", f.violations},           {"se2_sampled", f.sampled},
+                    {"se2_startup_ms", f.startup_ms},           {"se2_ms_p50", quantile(f.ms, 0.5)},
+                    {"se2_ms_p99", quantile(f.ms, 0.99)},       {"se2_check_ms_p50", quantile(f.check_ms, 0.5)},
+                    {"se2_metres_p50", quantile(f.length, 0.5)}};
+    if (!quiet) std::printf("%s %s\n", c.name.c_str(), maps[c.name].dump().c_str());
+    queries += c.queries.size();
+    solved += f.solved;
+    violations += f.violations;
+    sampled += f.sampled;
+    ms.insert(ms.end(), f.ms.begin(), f.ms.end());
+    check_ms.insert(check_ms.end(), f.check_ms.begin(), f.check_ms.end());
+    startup_ms.push_back(f.startup_ms);
+  }
+  json figures{{"se2_queries", queries},
+               {"se2_solved", solved},
+               {"se2_violations", violations},
+               {"se2_sampled", sampled},
+               {"se2_startup_ms", quantile(startup_ms, 1)},
+               {"se2_ms_p50", quantile(ms, 0.5)},
+               {"se2_ms_p99", quantile(ms, 0.99)},
+               {"se2_check_ms_p50", quantile(check_ms, 0.5)}};
+  if (!quiet) std::printf("poses in all %s\n\n", figures.dump().c_str());
+  figures["maps"] = std::move(maps);
+  return figures;
+}
+
 }  // namespace
 }  // namespace concord
 
@@ -238,12 +274,13 @@ int main(int argc, char** argv) {
   std::string data = CONCORD_SHARED_DATA;
   std::string warthog = CONCORD_WARTHOG_JPS;
   app.add_flag("--json", as_json, "one JSON object instead of lines");
-  app.add_option("--data", data, "holds buildings_conf, movingai and anyangle_optima.csv");
+  app.add_option("--data", data, "holds buildings, buildings_conf, movingai and anyangle_optima.csv");
   app.add_option("--warthog", warthog, "the program warthog-jps; the CMake variable CONCORD_WARTHOG_JPS, if not given");
   CLI11_PARSE(app, argc, argv);
   try {
     nlohmann::json figures;
     for (const char* folder : {"buildings_conf", "movingai"}) figures[folder] = bench(data, folder, warthog, as_json);
+    figures["poses"] = bench_poses(data, as_json);
     if (as_json) std::printf("%s\n", figures.dump(2).c_str());
   } catch (const std::exception& e) {
     std::fprintf(stderr, "bench_plan: %s\n", e.what());

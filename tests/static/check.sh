@@ -3,7 +3,7 @@
 set -u
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.." || exit 2
 
-sources() { find "$@" -type f \( -name '*.cpp' -o -name '*.hpp' \) | LC_ALL=C sort; }
+sources() { find "$@" -name node_modules -prune -o -type f \( -name '*.cpp' -o -name '*.hpp' \) -print | LC_ALL=C sort; }
 
 # none WHAT: fails when standard input has a line, and shows it.
 none() {
@@ -19,14 +19,17 @@ is_shell='(_(node|store|streams|queue)\.[ch]pp|/main\.cpp|^modules/(bus|cli|agen
 
 dependencies() {
   local failed=0 process
-  sources modules planner | xargs -r grep -HnE '#include <lcm/' | grep -v '^modules/bus/' |
+  sources modules planner hmd_bridge | xargs -r grep -HnE '#include <lcm/' | grep -v '^modules/bus/' |
     none 'LCM outside modules/bus' || failed=1
-  sources modules planner | xargs -r grep -HnE '#include <concord/.*_t\.hpp>' | grep -v '^modules/bus/' |
+  sources modules planner hmd_bridge | xargs -r grep -HnE '#include <concord/.*_t\.hpp>' | grep -v '^modules/bus/' |
     none 'generated message types outside the translators in modules/bus' || failed=1
   sources modules planner | grep -vE "$is_shell" | xargs -r grep -HnE '#include (<(spdlog|CLI|sqlite3)|"(bus|store)/)' |
     none 'a core that logs, parses arguments, stores or talks' || failed=1
   sources modules planner | grep -vE "$is_shell" | xargs -r grep -HnE '(system|steady|high_resolution)_clock|gettimeofday|[^_.>]time\(' |
     none 'a core that reads a clock' || failed=1
+  sources hmd_bridge/protocol hmd_bridge/session hmd_bridge/view hmd_bridge/mapper |
+    xargs -r grep -HnE '#include (<(spdlog|CLI|sqlite3|boost|openssl)|"(bus|store|bridge|server|client)/)|(system|steady)_clock' |
+    none 'a core of hmd_bridge that logs, talks, stores or reads a clock' || failed=1
   sources modules/core | xargs -r grep -HnE '#include "' | grep -v '#include "core/' |
     none 'modules/core knows only itself' || failed=1
   sources modules/bus modules/store | xargs -r grep -HnE '#include "' | grep -vE '#include "(core|bus|store)/' |
@@ -36,13 +39,15 @@ dependencies() {
       grep -vE "#include \"($process|core|bus|store)/" |
       none "$process includes another process" || failed=1
   done
-  sources modules planner | grep '\.hpp$' | xargs -r grep -HnE '#include <(pcl|ompl|boost/beast)/' |
+  sources hmd_bridge | xargs -r grep -HnE '#include "(ingest|align|merge|semantic|planner|agent|cli)/' |
+    none 'hmd_bridge includes another process' || failed=1
+  sources modules planner hmd_bridge | grep '\.hpp$' | grep -v '^hmd_bridge/server/web_socket.hpp' | xargs -r grep -HnE '#include <(pcl|ompl|boost/beast)/' |
     none 'a header that is slow to compile, in a header' || failed=1
   return "$failed"
 }
 
 file_length() {
-  { sources modules planner tests; find run lcmtypes modules tests -name '*.lcm' -o -name '*.sh' -o -name '*.java' -o -name run; } |
+  { sources modules planner hmd_bridge tests; find run lcmtypes modules tests -name '*.lcm' -o -name '*.sh' -o -name '*.java' -o -name run; } |
     xargs wc -l | awk '$2 != "total" && $1 > ($2 ~ /^tests\// ? 400 : 320) {print "  " $2 ": " $1}' | none 'files that are not read in one sitting'
 }
 
@@ -70,7 +75,7 @@ format() {
     *'version 14.'*) ;;
     *) echo 'clang-format 14 is not installed'; exit 77 ;;
   esac
-  sources modules planner tests | while read -r file; do
+  sources modules planner hmd_bridge tests | while read -r file; do
     clang-format --dry-run --Werror "$file" 2>/dev/null || echo "$file"
   done | none 'files that clang-format would change'
 }

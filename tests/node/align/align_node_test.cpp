@@ -51,6 +51,40 @@ TEST_F(AlignStation, WhatIsAcceptedGoesToMergeInTheNameOfWhoAcceptedIt) {
   EXPECT_EQ(placements_.size(), 2U);
 }
 
+TEST_F(AlignStation, WhatMergeRefusesCanBeAcceptedLater) {
+  send("robot1", left_part());
+  send("robot2", right_part());
+  align_by_hand("robot1", kT_map_left);
+  ASSERT_TRUE(found(guess_of("a", "robot2", "", kT_map_left * kT_left_right)).ok);
+  merge_ = Merge::kRefuses;
+  EXPECT_EQ(accept("d", "a").code, "LOCKED");
+  results_.clear();
+  run();
+  ASSERT_FALSE(results_.empty()) << "no longer offered";
+  EXPECT_TRUE(results_.back().open);
+  merge_ = Merge::kIsDown;
+  EXPECT_EQ(accept("e", "a").id, "") << "nobody knows yet";
+  merge_ = Merge::kPlaces;
+  EXPECT_TRUE(accept("f", "a").ok);
+  EXPECT_EQ(accept("g", "a").code, "CONFLICT");
+  ASSERT_EQ(placements_.size(), 3U);
+  EXPECT_EQ(placements_[2].id, "f");
+}
+
+TEST_F(AlignStation, WhatShowsInTheMapIsAcceptedThoughMergesAnswerWasLost) {
+  send("robot1", left_part());
+  send("robot2", right_part());
+  align_by_hand("robot1", kT_map_left);
+  ASSERT_TRUE(found(guess_of("a", "robot2", "", kT_map_left * kT_left_right)).ok);
+  merge_ = Merge::kPlacesAndIsNotHeard;
+  EXPECT_EQ(accept("d", "a").id, "");
+  run();
+  EXPECT_EQ(accept("e", "a").code, "CONFLICT");
+  results_.clear();
+  run();
+  EXPECT_TRUE(results_.empty()) << "offered all the same: " << results_.back().evidence.message;
+}
+
 TEST_F(AlignStation, TheFirstPairFoundsTheMapInTheTargetsFrame) {
   send("robot1", left_part());
   send("robot2", right_part());
@@ -68,6 +102,38 @@ TEST_F(AlignStation, TheFirstPairFoundsTheMapInTheTargetsFrame) {
   ASSERT_EQ(placements_.size(), 2U);
   EXPECT_EQ(placements_[1].agent, "robot2");
   EXPECT_LT(metres_off(placements_[1].T_map_agent, kT_left_right), kNear);
+}
+
+TEST_F(AlignStation, OnePairAloneFoundsTheMap) {
+  send("robot1", left_part());
+  send("robot2", right_part());
+  send("robot3", left_part());
+  send("robot4", right_part());
+  ASSERT_TRUE(found(guess_of("a", "robot2", "robot1", kT_left_right)).ok);
+  ASSERT_TRUE(found(guess_of("b", "robot4", "robot3", kT_left_right)).ok);
+  merge_ = Merge::kIsDown;
+  EXPECT_EQ(accept("d", "a").code, "BUSY");
+  EXPECT_EQ(accept("e", "b").code, "BUSY");
+  ASSERT_EQ(placements_.size(), 1U) << "the map was founded twice";
+  EXPECT_EQ(placements_[0].agent, "robot1");
+  // Merge says no to the first: then the other may.
+  merge_ = Merge::kRefuses;
+  EXPECT_EQ(accept("d", "a").code, "BUSY");
+  merge_ = Merge::kPlaces;
+  EXPECT_EQ(accept("e", "b").code, "BUSY");
+  EXPECT_EQ(placements_.back().agent, "robot3");
+  run();
+  EXPECT_TRUE(accept("e", "b").ok);
+  EXPECT_EQ(accept("d", "a").code, "NOT_ALIGNED") << "it is another map's";
+}
+
+TEST_F(AlignStation, NobodyFoundsAMapThatSomebodyWithoutASubmapIsIn) {
+  send("robot1", left_part());
+  send("robot2", right_part());
+  align_without_submap("headset");
+  ASSERT_TRUE(found(guess_of("a", "robot2", "robot1", kT_left_right)).ok);
+  EXPECT_EQ(accept("d", "a").code, "NOT_ALIGNED");
+  EXPECT_TRUE(placements_.empty());
 }
 
 TEST_F(AlignStation, AnAgentFoundInAnotherLiesInTheMapWhereThatOneDoes) {
@@ -99,6 +165,9 @@ TEST_F(AlignStation, WhatNoLongerHoldsCannotBeAccepted) {
   ASSERT_TRUE(found(guess_of("a", "robot2", "", kT_map_left * kT_left_right)).ok);
   align_by_hand("robot1", kT_map_left * transform(0.5, 0, 0, 0));
   EXPECT_EQ(accept("d", "a").code, "STALE");
+  results_.clear();
+  run();
+  EXPECT_TRUE(results_.empty()) << "offered though it cannot be accepted";
   align_by_hand("robot1", kT_map_left);
   send("robot2", right_part(), "frame2");
   EXPECT_EQ(accept("d", "a").code, "BAD_FRAME");

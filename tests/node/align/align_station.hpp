@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -17,10 +18,19 @@ namespace concord::test {
 /// to place.
 class AlignStation : public ::testing::Test {
  protected:
-  AlignStation() {
+  /// What merge does when it is asked to place somebody.
+  enum class Merge {
+    kPlaces,
+    kPlacesAndIsNotHeard,
+    kRefuses,
+    kIsDown,
+  };
+
+  /// A station whose node computes otherwise, or elsewhere, than the real one.
+  explicit AlignStation(std::launch how = std::launch::deferred, AlignNode::Compute compute = carry_out) {
     site_.resolution = kResolution;
     node_ =
-        std::make_unique<AlignNode>(NodeContext{bus_, counters_, site_, "align", bus_.now()}, std::launch::deferred);
+        std::make_unique<AlignNode>(NodeContext{bus_, counters_, site_, "align", bus_.now()}, how, std::move(compute));
     bus_.subscribe("out/answer",
                    [this](const std::string&, auto bytes) { answers_.push_back(*decode<Answer>(bytes)); });
     bus_.subscribe("out/align",
@@ -46,6 +56,16 @@ class AlignStation : public ::testing::Test {
     sent_.at(agent).state.aligned = true;
     sent_.at(agent).state.T_map_agent = T_map_agent;
     run();
+  }
+  /// Somebody is in the map who sends no submap.
+  void align_without_submap(const std::string& agent) {
+    sent_[agent].state.id = agent;
+    align_by_hand(agent, Transform::Identity());
+  }
+  /// Merge moves it, and says so.
+  void set_place(const std::string& agent, const Transform& T_map_agent) {
+    sent_.at(agent).state.T_map_agent = T_map_agent;
+    say_agents();
   }
   void run(std::int64_t microseconds = 2'000'000) { bus_.advance_to(bus_.now() + microseconds); }
 
@@ -92,6 +112,7 @@ class AlignStation : public ::testing::Test {
   std::vector<Answer> answers_;
   std::vector<AlignResult> results_;
   std::vector<TransformRequest> placements_;
+  Merge merge_ = Merge::kPlaces;
 
  private:
   struct Sent {
@@ -102,9 +123,11 @@ class AlignStation : public ::testing::Test {
 
   void place(const TransformRequest& request) {
     placements_.push_back(request);
+    if (merge_ == Merge::kIsDown) return;
+    if (merge_ == Merge::kRefuses) return answer(bus_, {request.id, "merge", false, "LOCKED", "not now", 0, 0});
     sent_.at(request.agent).state.aligned = true;
     sent_.at(request.agent).state.T_map_agent = request.T_map_agent;
-    answer(bus_, {request.id, "merge", true, "OK", "placed", 1, 1});
+    if (merge_ == Merge::kPlaces) answer(bus_, {request.id, "merge", true, "OK", "placed", 1, 1});
   }
   void say_agents() {
     AgentList list{bus_.now(), site_.resolution, {}};

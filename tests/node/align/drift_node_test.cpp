@@ -3,6 +3,8 @@
 namespace concord::test {
 namespace {
 
+constexpr std::int64_t kLong = 150'000'000;
+
 class DriftStation : public AlignStation {
  protected:
   DriftStation() {
@@ -10,9 +12,9 @@ class DriftStation : public AlignStation {
     send("robot2", right_part());
     align_by_hand("robot1", Transform::Identity());
   }
-  /// What the watch says now.
+  /// What the watch says now. A look takes as long as it takes on this machine, and is paid for by a pause.
   std::vector<AlignResult> said() {
-    run(20'000'000);
+    run(kLong);
     results_.clear();
     run(1'000'000);
     return results_;
@@ -60,6 +62,52 @@ TEST_F(DriftStation, WhatTheOthersContradictIsSaidWithoutAnOffer) {
   EXPECT_FALSE(said_now.back().open);
   EXPECT_NE(said_now.back().evidence.message.find("contradict"), std::string::npos);
   EXPECT_TRUE(placements_.empty());
+}
+
+/// Farther than a recheck reaches, nearer than where nothing fits: neither is met with silence.
+TEST_F(DriftStation, WhoSlipsFartherAndFartherIsToldOfAllTheWay) {
+  for (const double slip : {0.25, 0.5}) {
+    align_by_hand("robot2", transform(slip, 0.3 * slip, 0.0, degrees(3)) * kT_left_right);
+    const auto offers = said();
+    ASSERT_FALSE(offers.empty()) << slip;
+    EXPECT_TRUE(offers.back().open) << slip << ": " << offers.back().evidence.message;
+    EXPECT_GT(offers.back().slip, 0.1) << slip;
+  }
+  EXPECT_TRUE(placements_.empty());
+}
+
+TEST_F(DriftStation, OnceOneIsPutRightNothingIsSaidOfTheOther) {
+  align_by_hand("robot2", transform(0.2, -0.15, 0.0, degrees(1.5)) * kT_left_right);
+  std::map<std::string, AlignResult> offers;
+  for (const AlignResult& one : said()) offers[one.source.agent] = one;
+  ASSERT_EQ(offers.size(), 2U) << "each lies wrong by the other";
+  ASSERT_TRUE(accept("d", offers["robot2"].id).ok);
+  run();
+  results_.clear();
+  run(3'000'000);
+  EXPECT_TRUE(results_.empty()) << "it was found where robot2 lay then: " << results_.back().evidence.message;
+  EXPECT_EQ(accept("e", offers["robot1"].id).code, "EXPIRED");
+}
+
+TEST_F(DriftStation, TheOthersAreLookedAtAgainWhenOneIsMoved) {
+  align_by_hand("robot2", kT_left_right);
+  run(kLong);
+  const std::int64_t looks = counters_.all().at("looks");
+  align_by_hand("robot2", transform(0.01, 0.0, 0.0, 0.0) * kT_left_right);
+  run(kLong);
+  EXPECT_EQ(counters_.all().at("looks"), looks + 2);
+}
+
+TEST_F(DriftStation, AnOfferIsFoundAnewWhenItExpires) {
+  align_by_hand("robot2", transform(0.2, -0.15, 0.0, degrees(1.5)) * kT_left_right);
+  const auto before = said();
+  ASSERT_FALSE(before.empty());
+  run(AlignDesk::kOpenFor);
+  const auto after = said();
+  ASSERT_FALSE(after.empty()) << "it lies as wrong as before";
+  EXPECT_NE(after.back().id, before.back().id);
+  EXPECT_TRUE(after.back().open);
+  EXPECT_TRUE(accept("d", after.back().id).ok);
 }
 
 TEST_F(DriftStation, LooksAreBoundedAndOnlyAtWhoSentSomething) {

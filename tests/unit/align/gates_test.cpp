@@ -18,52 +18,52 @@ Support a_good_place() {
 }
 
 TEST(Gates, TakeWhatNothingSpeaksAgainst) {
-  EXPECT_EQ(check_gates(a_good_place(), Origin::kGuess), AlignReason::kAccepted);
-  EXPECT_EQ(check_gates(a_good_place(), Origin::kAnywhere), AlignReason::kAccepted);
+  EXPECT_EQ(check_gates(a_good_place(), Origin::kGuess).reason, AlignReason::kAccepted);
+  EXPECT_EQ(check_gates(a_good_place(), Origin::kAnywhere).reason, AlignReason::kAccepted);
 }
 
 TEST(Gates, AskMoreOfAPlaceThatNobodyGuessed) {
   Support s = a_good_place();
   for (Verdicts* v : {&s.source_upright, &s.target_upright}) v->matched = 35.0;
   for (Verdicts* v : {&s.source_level, &s.target_level}) v->matched = 14.0;
-  EXPECT_EQ(check_gates(s, Origin::kGuess), AlignReason::kAccepted);
-  EXPECT_EQ(check_gates(s, Origin::kAnywhere), AlignReason::kLowOverlap);
+  EXPECT_EQ(check_gates(s, Origin::kGuess).reason, AlignReason::kAccepted);
+  EXPECT_EQ(check_gates(s, Origin::kAnywhere).reason, AlignReason::kLowOverlap);
 }
 
 TEST(Gates, AllowABuildingTheDriftThatARoomIsNotAllowed) {
   Support room = a_good_place();
   room.source_upright.displaced = 3.0;
-  EXPECT_EQ(check_gates(room, Origin::kGuess), AlignReason::kAccepted) << "2.4 %; 120 m2 of walls allow 3.2 %";
+  EXPECT_EQ(check_gates(room, Origin::kGuess).reason, AlignReason::kAccepted) << "2.4 %; 120 m2 of walls allow 3.2 %";
   room.source_upright.matched = room.target_upright.matched = 45.0;  // 3.2 % now, and 90 m2 allow 2.5 %
-  EXPECT_EQ(check_gates(room, Origin::kGuess), AlignReason::kDiverged);
+  EXPECT_EQ(check_gates(room, Origin::kGuess).reason, AlignReason::kDiverged);
   Support building = a_good_place();
   building.source_upright = building.target_upright = {400.0, 200.0, 16.0, 0.0};  // 7 %
   building.matched_facing = 200.0 * Eigen::Matrix2d::Identity();
-  EXPECT_EQ(check_gates(building, Origin::kGuess), AlignReason::kAccepted);
+  EXPECT_EQ(check_gates(building, Origin::kGuess).reason, AlignReason::kAccepted);
 }
 
 TEST(Gates, HearFloorsOnlyWhereThereAreAny) {
   Support s = a_good_place();
   s.source_level.displaced = 12.0;  // 20 % of the floors, 7 % of everything
-  EXPECT_EQ(check_gates(s, Origin::kGuess), AlignReason::kDiverged);
+  EXPECT_EQ(check_gates(s, Origin::kGuess).reason, AlignReason::kDiverged);
   s.source_level = s.target_level = {4.0, 3.0, 0.8, 0.0};  // 21 % of what is no floor but edges
   s.source_upright.matched = s.target_upright.matched = 60.0;
-  EXPECT_EQ(check_gates(s, Origin::kGuess), AlignReason::kAccepted);
+  EXPECT_EQ(check_gates(s, Origin::kGuess).reason, AlignReason::kAccepted);
 }
 
 TEST(Gates, WantSomethingThatHoldsTheHeight) {
   Support s = a_good_place();
   s.source_level = s.target_level = {40.0, 0.4, 0.0, 0.0};
-  EXPECT_EQ(check_gates(s, Origin::kGuess), AlignReason::kDegenerate);
+  EXPECT_EQ(check_gates(s, Origin::kGuess).reason, AlignReason::kDegenerate);
 }
 
 TEST(Gates, LetOneDirectionSpeak) {
   Support s = a_good_place();
   s.source_upright.displaced = 2.0;
   s.matched_facing = Eigen::Vector2d(55.0, 5.0).asDiagonal();
-  EXPECT_EQ(check_gates(s, Origin::kGuess), AlignReason::kAccepted);
+  EXPECT_EQ(check_gates(s, Origin::kGuess).reason, AlignReason::kAccepted);
   s.against_facing = Eigen::Vector2d(0.0, 3.0).asDiagonal();
-  EXPECT_EQ(check_gates(s, Origin::kGuess), AlignReason::kDiverged);
+  EXPECT_EQ(check_gates(s, Origin::kGuess).reason, AlignReason::kDiverged);
 }
 
 }  // namespace

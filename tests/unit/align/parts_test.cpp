@@ -7,7 +7,6 @@
 #include <set>
 
 #include "align/block_set.hpp"
-#include "align/column_search.hpp"
 #include "align/gicp.hpp"
 #include "align/sampling.hpp"
 #include "align/wall_grid.hpp"
@@ -183,17 +182,6 @@ RC_GTEST_PROP(WallGrid, BoundsEveryValueOfAWindow, ()) {
     for (int dx = 0; dx < 1 << level; ++dx) largest = std::max(largest, kGrid.at(0, x + dx, y + dy));
   }
   RC_ASSERT(kGrid.at(level, x, y) == largest);
-}
-
-TEST(ColumnSearch, GivesPlacesInOrderAndApart) {
-  const AlignMap map = cloud_map(room());
-  const Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
-  const std::vector<PlanarPose> places = search_columns(map, R, map, R, {}, 1);
-  ASSERT_FALSE(places.empty());
-  EXPECT_LT(places.front().t.norm(), 0.2);
-  EXPECT_LT(std::abs(places.front().yaw), degrees(3));
-  EXPECT_GT(places.front().score, 0.5);
-  for (std::size_t i = 1; i < places.size(); ++i) EXPECT_LE(places[i].score, places[i - 1].score);
 }
 
 TEST(BlockSet, HoldsWhatWasPutIn) {

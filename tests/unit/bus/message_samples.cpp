@@ -67,6 +67,8 @@ AlignResult align_result() {
   evidence.rms = 0.02;
   evidence.covariance(1, 1) = 1e-4;
   evidence.covariance(0, 1) = 2e-5;
+  evidence.p_target_centre = {1.0, 2.0, 0.5};
+  evidence.T_target_source_rivals = {some_transform(), Transform::Identity()};
   evidence.loose = {"slides along x (1.00 0.00 0.00)"};
   evidence.against_upright = 0.01;
   evidence.iterations = 40;

@@ -73,6 +73,9 @@ TEST(AlignResultMessage, RefusesFiguresThatAreNone) {
   refused([](auto& m) { m.against_walls = kNaN; }, Code::kBadRequest);
   refused([](auto& m) { m.rms = -1; }, Code::kNotFinite);
   refused([](auto& m) { m.covariance[35] = kNaN; }, Code::kNotFinite);
+  refused([](auto& m) { m.centre[2] = kNaN; }, Code::kNotFinite);
+  refused([](auto& m) { m.rivals.emplace_back(), m.rival_count = 1; }, Code::kBadTransform);
+  refused([](auto& m) { m.reason = "PERHAPS"; }, Code::kBadRequest);
   refused([](auto& m) { m.hypotheses = -1; }, Code::kBadRequest);
   refused([](auto& m) { m.reason = ""; }, Code::kBadRequest);
   refused([](auto& m) { m.source.agent = ""; }, Code::kBadName);

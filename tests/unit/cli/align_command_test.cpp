@@ -103,6 +103,16 @@ TEST_F(AlignFilesTest, TakesAGuessAndDrawsBeforeAndAfter) {
   EXPECT_GT(fs::file_size(path("out.png")), 10'000U);
 }
 
+/// What was found is printed whatever becomes of the picture, and in JSON there is nothing else.
+TEST_F(AlignFilesTest, APictureThatFailsTakesNothingFromWhatWasFound) {
+  const std::string target = write("left.pcd", pcd(left_part())), source = write("right.pcd", pcd(right_part()));
+  EXPECT_EQ(align({source, target, "--picture", path("none/out.png")}), 2);
+  expect_found();
+  const std::string one = write("one.pcd", pcd({{0, 0, 0}, {1, 0, 0}}));
+  EXPECT_EQ(align({one, target, "--picture", path("out.png")}), 3) << "nothing to draw";
+  EXPECT_EQ(said_["reason"], "NO_MAP");
+}
+
 TEST_F(AlignFilesTest, AnotherRoomIsRefusedWithTheFigures) {
   const std::string target = write("left.ply", ply(left_part())), source = write("other.ply", ply(other_room()));
   EXPECT_EQ(align({source, target}), 3);
@@ -136,7 +146,26 @@ TEST_F(AlignFilesTest, PointsThatAreNotFiniteAreLeftOut) {
   EXPECT_EQ(points->size(), 2U);
 }
 
+TEST_F(AlignFilesTest, DoublesAreReadAsSuch) {
+  const std::string pcd =
+      "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 1\n"
+      "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA ascii\n1.5 -2.25 3.125\n0.5 0 0\n";
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 2\nproperty double x\nproperty double y\nproperty double z\n"
+      "end_header\n1.5 -2.25 3.125\n0.5 0 0\n";
+  for (const std::string& file : {write("doubles.pcd", pcd), write("doubles.ply", ply)}) {
+    const auto points = read_cloud(file, 0.05);
+    ASSERT_TRUE(points) << points.error().message;
+    ASSERT_EQ(points->size(), 2U);
+    EXPECT_TRUE(points->front().isApprox(Eigen::Vector3f(1.5F, -2.25F, 3.125F))) << file;
+  }
+}
+
 TEST_F(AlignFilesTest, BadFilesAreRefusedInWords) {
+  expect_unusable(write("flat.pcd",
+                        "VERSION 0.7\nFIELDS x y\nSIZE 4 4\nTYPE F F\nCOUNT 1 1\nWIDTH 1\nHEIGHT 1\nPOINTS 1\n"
+                        "DATA ascii\n1 2\n"),
+                  "MALFORMED");
   expect_unusable(path("none.pcd"), "NOT_FOUND");
   expect_unusable(write("empty.pcd", pcd({})), "EMPTY");
   expect_unusable(write("headless.pcd", "VERSION 0.7\nFIELDS x y z\n"), "MALFORMED");

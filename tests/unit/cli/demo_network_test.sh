@@ -7,7 +7,7 @@ top=$(mktemp -d)
 trap 'exec 3>&- 4>&-; wait; rm -rf "$top"' EXIT
 cp "$1" "$top/run"
 mkdir -p "$top/build/bin"
-printf 'rule none\n  command = true\nbuild modules/all: phony\nbuild planner/all: phony\n' >"$top/build/build.ninja"
+printf 'rule none\n  command = true\nbuild modules/all: phony\nbuild planner/all: phony\nbuild hmd_bridge/all: phony\n' >"$top/build/build.ninja"
 cat >"$top/build/bin/concord" <<'END'
 #!/usr/bin/env bash
 [ "${1:-}" != demo ] || { [ "$2" != refused ] || exit 2; readlink /proc/self/ns/net >"$2"; read -r _ <"$3" || true; exit 0; }

@@ -138,5 +138,55 @@ TEST_F(PlanCommand, GoesOverAMapServersGridInItsOwnFrame) {
   EXPECT_EQ(with("nan 1").exit, 2);
 }
 
+TEST_F(PlanCommand, TakesAFootprint) {
+  const std::vector<std::string> base{"--grid", file("g.yaml"), "--json",   "--turn-radius",
+                                      "0.8",    "--from",       "12 -3 0.5"};
+  auto with = [&](const std::string& footprint, const std::string& to, std::vector<std::string> more = {}) {
+    std::vector<std::string> all = base;
+    all.insert(all.end(), {"--footprint", footprint, "--to", to});
+    all.insert(all.end(), more.begin(), more.end());
+    return run(all);
+  };
+  const Ran ran = with("1.2x0.8", "28 -3 1.57", {"--picture", file("path.png"), "--paths", file("paths")});
+  ASSERT_EQ(ran.exit, 0) << ran.out;
+  const nlohmann::json path = ran.json();
+  EXPECT_EQ(path["status"], "OK");
+  EXPECT_EQ(path["points"].front(), nlohmann::json({12, -3, 0.5}));
+  EXPECT_EQ(path["points"].back(), nlohmann::json({28, -3, 1.57}));
+  EXPECT_GT(path["least_clearance"].get<double>(), 0);
+  EXPECT_EQ(path["clearance"].size(), path["points"].size());
+  EXPECT_TRUE(fs::exists(folder / "path.png"));
+  std::ifstream lines(folder / "paths");
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(nlohmann::json::parse(line)["points"], path["points"]);
+  const Ran polygon = with("-0.5 -0.4, 0.8 0, -0.5 0.4", "28 -3 1.57");
+  EXPECT_EQ(polygon.exit, 0) << polygon.out;
+  const Ran near = with("1.2x0.8", "20.1 -3 0");
+  EXPECT_EQ(near.exit, 1);
+  EXPECT_EQ(near.json()["status"], "GOAL_OCCUPIED");
+  EXPECT_EQ(with("1.2x0.8", "19.7 -3 0").json()["status"], "GOAL_CLEARANCE");
+  EXPECT_EQ(with("8x7.5", "28 -3 0").json()["status"], "START_CLEARANCE");
+  EXPECT_EQ(with("1.2x0.8", "9e9 -3 0").json()["status"], "GOAL_OUTSIDE_MAP");
+  for (const char* bad : {"1.2", "nanx1", "0 0, 1 1", "-1 -1, 1 1, 1 -1, -1 1", "1e99x1"}) {
+    EXPECT_EQ(with(bad, "28 -3 1.57").exit, 2) << bad;
+  }
+  EXPECT_EQ(with("1.2x0.8", "nan -3 0").exit, 2);
+  EXPECT_EQ(with("1.2x0.8", "28 -3 0", {"--radius", "0.3"}).exit, 2);
+}
+
+TEST_F(PlanCommand, WritesTheOnePathOfARoundRobot) {
+  const Ran ran = run({"--grid", file("g.yaml"), "--json", "--radius", "0.3", "--from", "12 -4", "--to", "28 -4",
+                       "--paths", file("paths")});
+  ASSERT_EQ(ran.exit, 0) << ran.out;
+  std::ifstream lines(folder / "paths");
+  std::string line;
+  std::getline(lines, line);
+  const nlohmann::json path = nlohmann::json::parse(line);
+  EXPECT_EQ(path["status"], "OK");
+  EXPECT_EQ(path["points"].front(), nlohmann::json({12, -4}));
+  EXPECT_EQ(path["radius"], 0.3);
+}
+
 }  // namespace
 }  // namespace concord

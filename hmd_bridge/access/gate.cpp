@@ -1,0 +1,62 @@
+#include "access/gate.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+namespace concord::hmd {
+namespace {
+
+constexpr double kTriesPerSecond = 1, kTriesAtOnce = 30;
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+}  // namespace
+
+bool is_loopback(const std::string& address) {
+  return address == "::1" || address.starts_with("127.") || address.starts_with("::ffff:127.");
+}
+
+bool is_local_host(const std::string& host) {
+  const std::string name = lower(host.substr(0, host.starts_with('[') ? host.find(']') + 1 : host.find(':')));
+  const bool dotted = std::all_of(name.begin(), name.end(), [](char c) { return (c >= '0' && c <= '9') || c == '.'; });
+  return name == "localhost" || name == "[::1]" || (dotted && name.starts_with("127."));
+}
+
+bool origin_allowed(const std::string& origin, const std::string& scheme, const std::string& host,
+                    const std::vector<std::string>& also) {
+  if (origin.empty()) return true;
+  const std::string from = lower(origin);
+  if (!host.empty() && from == scheme + "://" + lower(host)) return true;
+  return std::any_of(also.begin(), also.end(), [&](const std::string& allowed) { return lower(allowed) == from; });
+}
+
+bool Gate::may_try(const std::string& address, std::int64_t now) {
+  if (tries_.size() >= kMaxAddresses && !tries_.contains(address)) {
+    std::erase_if(tries_, [now](const auto& entry) { return entry.second.full(now); });
+    if (tries_.size() >= kMaxAddresses) return false;
+  }
+  return tries_.try_emplace(address, kTriesPerSecond, kTriesAtOnce).first->second.take(1, now);
+}
+
+std::optional<std::string> Gate::issue(const Identity& identity, std::int64_t now) {
+  std::erase_if(tickets_, [now](const auto& entry) { return entry.second.until <= now; });
+  if (tickets_.size() >= kMaxTickets) return std::nullopt;
+  std::string ticket = new_secret_();
+  tickets_[ticket] = {identity, now + kTicketLife};
+  return ticket;
+}
+
+std::optional<Identity> Gate::redeem(const std::string& ticket, std::int64_t now) {
+  const auto it = tickets_.find(ticket);
+  if (it == tickets_.end()) return std::nullopt;
+  const Ticket found = it->second;
+  tickets_.erase(it);
+  if (found.until <= now) return std::nullopt;
+  return found.identity;
+}
+
+}  // namespace concord::hmd

@@ -1,0 +1,120 @@
+#include "access/token_store.hpp"
+
+#include <openssl/evp.h>
+#include <openssl/rand.h>
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include "core/requests.hpp"
+#include "store/database.hpp"
+
+namespace concord::hmd {
+namespace {
+
+constexpr const char* kMigrations[] = {
+    "CREATE TABLE tokens (name TEXT PRIMARY KEY, hash TEXT NOT NULL UNIQUE, role INTEGER NOT NULL, created INTEGER NOT "
+    "NULL)"};
+constexpr std::size_t kMaxToken = 200;
+
+std::string sha256(const std::string& text) {
+  std::array<unsigned char, 32> hash;
+  unsigned size = 0;
+  if (EVP_Digest(text.data(), text.size(), hash.data(), &size, EVP_sha256(), nullptr) != 1)
+    throw std::runtime_error("no SHA-256");
+  static constexpr char kHex[] = "0123456789abcdef";
+  std::string out;
+  for (const unsigned char byte : hash) {
+    out += kHex[byte >> 4];
+    out += kHex[byte & 15];
+  }
+  return out;
+}
+
+/// Runs `use` on the opened store; what SQLite says becomes a refusal.
+template <class Use>
+auto with(const std::filesystem::path& file, Use use) -> decltype(use(std::declval<Database&>())) {
+  try {
+    Database database(file, kMigrations);
+    return use(database);
+  } catch (const std::runtime_error& e) {
+    const std::string what = e.what();
+    const bool busy = what.find("another process") != std::string::npos;
+    return concord::refuse(busy ? concord::Code::kBusy : concord::Code::kIo, what);
+  }
+}
+
+}  // namespace
+
+std::string random_secret() {
+  std::array<unsigned char, 32> bytes;
+  if (RAND_bytes(bytes.data(), static_cast<int>(bytes.size())) != 1)
+    throw std::runtime_error("the system gives no random bytes");
+  static constexpr char kLetters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
+  std::string text;
+  unsigned bits = 0, held = 0;
+  for (const unsigned char byte : bytes) {
+    held = held << 8 | byte;
+    for (bits += 8; bits >= 6; bits -= 6) text += kLetters[held >> (bits - 6) & 63];
+  }
+  return text + kLetters[held << (6 - bits) & 63];
+}
+
+Result<std::string> TokenStore::add(const std::string& name, Role role, std::int64_t now) {
+  if (!is_name(name)) return concord::refuse(concord::Code::kBadName, "a token's name is 1 to 40 of A-Z a-z 0-9 . _ -");
+  return with(file_, [&](Database& database) -> Result<std::string> {
+    Statement count = database.prepare("SELECT COUNT(*), SUM(name = ?) FROM tokens");
+    const auto row = count.bind(name).step();
+    if (!row) return tl::unexpected(row.error());
+    if (count.integer(0) >= static_cast<std::int64_t>(kMost))
+      return concord::refuse(concord::Code::kTooLarge, "there are 1000 tokens; remove some");
+    if (count.integer(1) > 0)
+      return concord::refuse(concord::Code::kExists, "there is a token " + name + "; remove it first");
+    count.reset();
+    std::string token = "concord_" + random_secret();
+    Statement insert = database.prepare("INSERT INTO tokens VALUES (?, ?, ?, ?)");
+    const auto done = insert.run(name, sha256(token), static_cast<std::int64_t>(role), now);
+    if (!done) return tl::unexpected(done.error());
+    return token;
+  });
+}
+
+Result<void> TokenStore::remove(const std::string& name) {
+  return with(file_, [&](Database& database) -> Result<void> {
+    Statement find = database.prepare("SELECT 1 FROM tokens WHERE name = ?");
+    const auto row = find.bind(name).step();
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) return concord::refuse(concord::Code::kNotFound, "no token is called " + name);
+    find.reset();
+    return database.prepare("DELETE FROM tokens WHERE name = ?").run(name);
+  });
+}
+
+Result<std::vector<TokenStore::Entry>> TokenStore::list() {
+  return with(file_, [&](Database& database) -> Result<std::vector<Entry>> {
+    std::vector<Entry> entries;
+    Statement all = database.prepare("SELECT name, role, created FROM tokens ORDER BY name");
+    all.bind();
+    const auto read = all.for_each_row([&] {
+      entries.push_back({all.text(0), static_cast<Role>(std::min<std::int64_t>(2, all.integer(1))), all.integer(2)});
+    });
+    if (!read) return tl::unexpected(read.error());
+    return entries;
+  });
+}
+
+Result<std::optional<Identity>> TokenStore::find(const std::string& token) {
+  if (token.size() > kMaxToken) return std::optional<Identity>();
+  return with(file_, [&](Database& database) -> Result<std::optional<Identity>> {
+    Statement find = database.prepare("SELECT name, role FROM tokens WHERE hash = ?");
+    const auto row = find.bind(sha256(token)).step();
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) return std::optional<Identity>();
+    const std::int64_t role = find.integer(1);
+    if (role < 0 || role > 2) return concord::refuse(concord::Code::kMalformed, "a token in the store has no role");
+    return std::optional(Identity{find.text(0), static_cast<Role>(role)});
+  });
+}
+
+}  // namespace concord::hmd

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "bridge/desk.hpp"
+#include "bus/brick_stream.hpp"
+#include "mapper/room_mapper.hpp"
+
+namespace concord::hmd {
+
+/// Clients that are agents: what they scan becomes their submap on the bus, and where they are their pose.
+class OwnMaps {
+ public:
+  static constexpr std::size_t kMost = 64;
+
+  OwnMaps(Desk& desk);
+  OwnMaps(const OwnMaps&) = delete;
+  OwnMaps& operator=(const OwnMaps&) = delete;
+
+  void begin(const Session& session, bool resumed);
+  void tracking(const Session& session);
+  void upload(const Ask& ask, const BinaryFrame& frame);
+  void send_map(const Ask& ask, const SendMapRequest& request);
+
+ private:
+  struct Own {
+    Own(const NodeContext& context, const std::string& agent);
+    RoomMapper mapper;
+    BrickSender sender;
+    std::string frame_id;  ///< empty: not begun
+    std::string over;      ///< a frame of it that was reset
+    std::int64_t pose_sent = 0, used = 0;
+    bool dirty = false;
+  };
+
+  [[nodiscard]] Own* own_of(const std::string& agent);
+  /// The map that a client scans into now, or why it may not.
+  [[nodiscard]] Granted<Own*> open(const Session& session);
+  void publish(Own& own);
+
+  Desk& desk_;
+  std::map<std::string, std::unique_ptr<Own>> by_agent_;
+};
+
+}  // namespace concord::hmd

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <memory>
+
+#include "access/gate.hpp"
+#include "bridge/desk.hpp"
+#include "bridge/own_maps.hpp"
+#include "bus/process.hpp"
+
+namespace concord::hmd {
+
+/// The bridge between the bus and its clients, whatever carries them: a server feeds the hub, a test may too.
+class BridgeNode {
+ public:
+  BridgeNode(const NodeContext& context, Gate& gate, const Hub::Config& config);
+  BridgeNode(const BridgeNode&) = delete;
+  BridgeNode& operator=(const BridgeNode&) = delete;
+
+  [[nodiscard]] Hub& hub() { return hub_; }
+  [[nodiscard]] World& world() { return world_; }
+
+ private:
+  [[nodiscard]] Hub::Handlers handlers();
+  void on_path(const concord::Path& path);
+  void hear_parts();
+
+  NodeContext context_;
+  Hub hub_;
+  World world_;
+  Asker asker_;
+  Desk desk_;
+  OwnMaps own_maps_;
+};
+
+/// What the site file says of clients, for the hub.
+[[nodiscard]] Hub::Config hub_config(const Site& site);
+
+}  // namespace concord::hmd

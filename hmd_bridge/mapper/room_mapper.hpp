@@ -1,0 +1,67 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <unordered_map>
+#include <vector>
+
+#include "core/brick_map.hpp"
+#include "protocol/frame.hpp"
+
+namespace concord::hmd {
+
+/// What a headset has scanned, as voxels in its own frame.
+///
+/// Mesh looks follow SLAM-XR's voxelizer (Section III-A): each look adds 5 % to every cell that a mesh meets and takes
+/// 1 % off every existing voxel that none meets; a voxel exists from 60 % up. Cells begin at 50 %, and only those
+/// within kReach of the sensor are judged. Free space is HAC-SLAM's Algorithm 1 with an exact traversal (core/ray.hpp):
+/// a ray from the sensor to a met cell frees the cells before the first that is met, and never that one.
+class RoomMapper {
+ public:
+  static constexpr int kBegin = 50, kHit = 5, kMiss = 1, kExists = 60, kFull = 100;  ///< percent
+  static constexpr double kReach = 5.0;                                              ///< metres
+  static constexpr std::size_t kMaxCells = 4'000'000;  ///< that all meshes meet, and that one look may look at
+  static constexpr std::size_t kMaxRays = 20'000;      ///< of one look; of more met cells each n-th, in turns
+  static constexpr std::size_t kMaxBricks = 200'000;
+  static constexpr std::size_t kMaxMeshes = 4096;
+
+  explicit RoomMapper(double resolution) : resolution_(resolution) {}
+
+  /// Refused, and nothing has changed: meshes or a map larger than the limits (kTooLarge), a sensor or mesh beyond any
+  /// map (kOutOfBounds), a sequence that came before (kStale).
+  [[nodiscard]] Result<void> take(const MeshLook& look, std::int64_t sequence);
+  /// Refused also: another resolution (kBadResolution), no voxel (kEmpty).
+  [[nodiscard]] Result<void> take(const VoxelLook& look, std::int64_t sequence);
+  /// The sequence may begin anew.
+  void end_sequence() { next_sequence_ = 0; }
+
+  [[nodiscard]] const BrickMap& map() const { return map_; }
+  /// Bricks that have changed since the last call, ascending.
+  [[nodiscard]] std::vector<BrickIndex> take_changed();
+  [[nodiscard]] std::int64_t occupied() const { return occupied_; }
+  [[nodiscard]] std::int64_t known() const { return static_cast<std::int64_t>(map_.known_count()); }
+
+ private:
+  /// By voxel: 0 unknown, 1 free, from kBegin on percent.
+  using Cells = std::array<std::uint8_t, kBrickVoxels>;
+  static constexpr std::uint8_t kUnknownCell = 0, kFreeCell = 1;
+
+  [[nodiscard]] Result<std::vector<VoxelIndex>> cells_of(const MeshPart& part, std::size_t most) const;
+  void judge(const std::unordered_map<BrickIndex, VoxelMask, IndexHash>& met, const Eigen::Vector3d& sensor);
+  void cast(const std::unordered_map<BrickIndex, VoxelMask, IndexHash>& met, const std::vector<VoxelIndex>& ends,
+            const Eigen::Vector3d& sensor);
+  void render(BrickIndex index);
+  [[nodiscard]] bool reached(VoxelIndex voxel, const Eigen::Vector3d& sensor) const;
+
+  double resolution_;
+  std::int64_t next_sequence_ = 0;
+  std::map<std::uint32_t, std::vector<VoxelIndex>> meshes_;  ///< cells that each meets, sorted
+  std::size_t met_cells_ = 0;
+  std::unordered_map<BrickIndex, Cells, IndexHash> cells_;
+  BrickMap map_;
+  std::int64_t occupied_ = 0;
+  std::map<BrickIndex, bool> changed_;  ///< true: not rendered yet
+};
+
+}  // namespace concord::hmd

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "core/error.hpp"
+
+namespace concord::hmd {
+
+/// The files that are served, read whole at the start: a request can name one of these and nothing else, so no path
+/// ever reaches the file system.
+class StaticFiles {
+ public:
+  static constexpr std::size_t kMaxBytes = 256 << 20;
+  static constexpr std::size_t kMaxFiles = 10'000;
+
+  struct File {
+    std::string type;
+    std::shared_ptr<const std::string> body;
+  };
+
+  /// Adds all files below `folder` as `prefix` and their path there; names that are hidden or hold other letters than
+  /// A-Z a-z 0-9 . _ - are left out. Refused: no such folder (kNotFound), over the limits (kTooLarge), unreadable
+  /// (kIo).
+  [[nodiscard]] Result<void> add(const std::filesystem::path& folder, const std::string& prefix);
+  void add(const std::string& path, File file) { files_[path] = std::move(file); }
+
+  /// What a request target names; "/" is "/index.html", a query is not heeded. Null: nothing.
+  [[nodiscard]] const File* find(std::string_view target) const;
+  [[nodiscard]] std::size_t size() const { return files_.size(); }
+
+ private:
+  std::map<std::string, File, std::less<>> files_;
+  std::size_t bytes_ = 0;
+};
+
+}  // namespace concord::hmd

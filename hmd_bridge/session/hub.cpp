@@ -1,0 +1,255 @@
+#include "session/hub.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace concord::hmd {
+namespace {
+
+constexpr std::int64_t kSweep = 10'000'000;
+
+SharedText share(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
+
+Refusal refusal(Code code, const std::string& message) { return {code, message.substr(0, 400), may_retry(code)}; }
+
+/// The name and the role of a request that is a binary frame.
+const RequestInfo* upload_info(FrameKind kind) {
+  const char* name = kind == FrameKind::kMesh     ? UploadMeshAnswer::kName
+                     : kind == FrameKind::kVoxels ? UploadVoxelsAnswer::kName
+                                                  : "";
+  const auto& infos = request_infos();
+  const auto it = std::find_if(infos.begin(), infos.end(),
+                               [&](const RequestInfo& info) { return std::string_view(info.name) == name; });
+  return it != infos.end() ? &*it : nullptr;
+}
+
+}  // namespace
+
+Hub::Hub(Gate& gate, Config config, Handlers handlers)
+    : gate_(gate), config_(std::move(config)), handlers_(std::move(handlers)) {}
+
+Result<Hub::Connection> Hub::open(const Peer& peer, std::int64_t now) {
+  now_ = now;
+  const auto same = static_cast<std::size_t>(std::count_if(
+      links_.begin(), links_.end(), [&](const auto& entry) { return entry.second.peer.address == peer.address; }));
+  if (links_.size() >= config_.max_clients) return refuse_busy("there are as many clients as may be");
+  if (!peer.local && same >= config_.max_clients_per_address)
+    return refuse_busy("there are as many clients from this address as may be");
+  const SessionLimits& limits = config_.limits;
+  Link link{.peer = peer,
+            .opened = now,
+            .session = {},
+            .first = {},
+            .asked = {},
+            .asked_bytes = 0,
+            .last = nullptr,
+            .closing = {},
+            .refusals = TokenBucket(limits.refusals_per_second, limits.burst_refusals)};
+  links_.emplace(++last_connection_, std::move(link));
+  return last_connection_;
+}
+
+tl::unexpected<Error> Hub::refuse_busy(const char* why) { return concord::refuse(concord::Code::kBusy, why); }
+
+void Hub::text(Connection connection, std::string_view text, std::int64_t now) {
+  now_ = now;
+  const auto it = links_.find(connection);
+  if (it == links_.end() || it->second.closing) return;
+  Link& link = it->second;
+  auto read = read_client_text(text);
+  Session* session = link.session ? find(*link.session) : nullptr;
+  if (!read) {
+    const BadText& bad = read.error();
+    if (session == nullptr) return close(connection, link, 1002, Code::kBadMessage, bad.message);
+    const Code code = bad.is_name ? Code::kBadName : Code::kBadMessage;
+    if (bad.id) return refuse_now(connection, link, *session, *bad.id, "?", code, bad.message, now);
+    count_refusal(connection, link, now);
+    return tell(*session, "bad", event_text(BadEvent{bad.message.substr(0, 400)}));
+  }
+  const auto* request = std::get_if<ClientRequest>(&*read);
+  if (session == nullptr) {
+    if (request == nullptr || !std::holds_alternative<HelloRequest>(request->body)) {
+      return close(connection, link, 1002, Code::kBadMessage, "the first frame must be the request hello");
+    }
+    return greet(connection, link, *request, now);
+  }
+  if (request != nullptr) return take_request(connection, *session, *request, now);
+  if (!session->notices.take(1, now)) return count_refusal(connection, link, now);
+  take_notice(*session, std::get<NoticeBody>(*read));
+}
+
+bool Hub::is_new(Connection connection, Link& link, Session& session, std::int64_t id, const std::string& name,
+                 std::int64_t now) {
+  if (const SharedText said = session.answered.find(id)) {
+    session.outbox.lossless(said);
+    ready(session);
+    return false;
+  }
+  if (session.pending.contains(id)) return false;  // its answer is on the way
+  if (id > session.highest_id) return true;
+  refuse_now(connection, link, session, id, name, Code::kBadRequest, "ids of requests count up", now);
+  return false;
+}
+
+void Hub::take_request(Connection connection, Session& session, const ClientRequest& request, std::int64_t now) {
+  Link& link = links_.at(connection);
+  const RequestInfo& info = info_of(request.body);
+  const auto no = [&](Code code, const std::string& message) {
+    refuse_now(connection, link, session, request.id, info.name, code, message, now);
+  };
+  if (!is_new(connection, link, session, request.id, info.name, now)) return;
+  if (!session.requests.take(1, now)) return no(Code::kRate, "more requests than allowed; see limits");
+  session.highest_id = request.id;
+  if (std::holds_alternative<HelloRequest>(request.body)) return no(Code::kBadRequest, "hello was said already");
+  if (!may(session.identity.role, info.role)) {
+    return no(Code::kDenied,
+              "needs the role " + std::string(text_of(info.role)) + ", and yours is " + text_of(session.identity.role));
+  }
+  if (session.pending.size() >= kMaxPending) return no(Code::kBusy, "64 requests wait for their answers");
+  session.pending.emplace(request.id, info.name);
+  const Ask ask{session.person, request.id};
+  if (const auto* clock = std::get_if<ClockRequest>(&request.body))
+    return answer(ask, ClockAnswer{clock->t0, now, now});
+  handlers_.on_request(ask, request.body);
+}
+
+void Hub::binary(Connection connection, ByteSpan bytes, std::int64_t now) {
+  now_ = now;
+  const auto it = links_.find(connection);
+  if (it == links_.end() || it->second.closing) return;
+  Link& link = it->second;
+  Session* session = link.session ? find(*link.session) : nullptr;
+  if (session == nullptr)
+    return close(connection, link, 1002, Code::kBadMessage, "the first frame must be the request hello");
+  const auto frame = read_frame(bytes);
+  if (!frame) {
+    // The id is where it is, whatever else is wrong.
+    ByteSpan at = bytes.size() >= 8 ? bytes.subspan(4) : ByteSpan();
+    const std::int64_t id = read_le<std::uint32_t>(at).value_or(0);
+    const Code code = frame.error().code == concord::Code::kTooLarge ? Code::kTooLarge : Code::kBadMessage;
+    return refuse_now(connection, link, *session, id, "frame", code, frame.error().message, now);
+  }
+  const std::int64_t id = frame->head.stream;
+  const RequestInfo* info = upload_info(frame->head.kind);
+  const auto no = [&](Code code, const std::string& message) {
+    refuse_now(connection, link, *session, id, info != nullptr ? info->name : "frame", code, message, now);
+  };
+  if (info == nullptr || id == 0)
+    return no(Code::kBadMessage, "clients send frames of kind 65 and 66, under a request's id");
+  if (!is_new(connection, link, *session, id, info->name, now)) return;
+  if (!session->uploads.take(static_cast<double>(bytes.size()), now))
+    return no(Code::kRate, "more bytes than allowed; see limits");
+  session->highest_id = id;
+  if (!may(session->identity.role, info->role)) return no(Code::kDenied, "who only looks cannot map");
+  if (session->pending.size() >= kMaxPending) return no(Code::kBusy, "64 requests wait for their answers");
+  session->pending.emplace(id, info->name);
+  handlers_.on_upload({session->person, id}, *frame);
+}
+
+void Hub::take_notice(Session& session, const NoticeBody& notice) {
+  if (const auto* credit = std::get_if<CreditNotice>(&notice)) {
+    session.outbox.credit(credit->bytes);
+    return ready(session);
+  }
+  const auto& tracking = std::get<TrackingNotice>(notice);
+  session.tracking_lost = tracking.state == Tracking::kLost;
+  if (!session.agent.empty() && tracking.frame_id) session.frame_id = *tracking.frame_id;
+  session.T_own_head.reset();
+  if (tracking.T_own_head) {
+    const auto& [p, q] = *tracking.T_own_head;
+    if (const auto T = make_transform({p[0], p[1], p[2]}, {q[0], q[1], q[2], q[3]})) session.T_own_head = *T;
+  }
+  session.pointer.reset();
+  if (tracking.pointer)
+    session.pointer = Eigen::Vector3d((*tracking.pointer)[0], (*tracking.pointer)[1], (*tracking.pointer)[2]);
+  handlers_.on_tracking(session);
+}
+
+void Hub::refuse_now(Connection connection, Link& link, Session& session, std::int64_t id, const std::string& name,
+                     Code code, const std::string& message, std::int64_t now) {
+  session.outbox.lossless(share(error_text(id, refusal(code, message))));
+  audit(session, name, id, text_of(code));
+  ready(session);
+  count_refusal(connection, link, now);
+}
+
+void Hub::count_refusal(Connection connection, Link& link, std::int64_t now) {
+  if (!link.refusals.take(1, now)) close(connection, link, 1008, Code::kRate, "too many refused messages");
+}
+
+void Hub::close(Connection connection, Link& link, std::uint16_t code, Code why, const std::string& message) {
+  if (link.closing) return;
+  link.closing = Closing{code, message.substr(0, 100)};
+  link.last = share(event_text(ByeEvent{why, message.substr(0, 400)}));
+  ready_.insert(connection);
+}
+
+void Hub::closed(Connection connection, std::int64_t now) {
+  now_ = now;
+  const auto it = links_.find(connection);
+  if (it == links_.end()) return;
+  if (it->second.session) {
+    Session* session = find(*it->second.session);
+    if (session != nullptr) park(*session, now);
+  }
+  links_.erase(it);
+  ready_.erase(connection);
+}
+
+void Hub::park(Session& session, std::int64_t now) {
+  session.connection.reset();
+  session.parked_at = now;
+  session.outbox = Outbox();
+  handlers_.on_end(session);
+}
+
+void Hub::tick(std::int64_t now) {
+  now_ = now;
+  for (auto& [connection, link] : links_) {
+    if (!link.session && !link.closing && now - link.opened > kHelloWithin) {
+      close(connection, link, 1008, Code::kTimeout, "no hello within 5 s");
+    }
+    const Session* session = link.session ? find(*link.session) : nullptr;
+    if (session != nullptr && session->outbox.overflowed()) {
+      close(connection, link, 1013, Code::kTooLarge, "answers were not taken in time");
+    }
+  }
+  std::vector<std::pair<std::int64_t, std::int64_t>> parked;  // since, number
+  for (const auto& [number, session] : sessions_) {
+    if (!session.connection) parked.emplace_back(session.parked_at, number);
+  }
+  std::sort(parked.begin(), parked.end());
+  for (std::size_t i = 0; i < parked.size(); ++i) {
+    const bool old = now - parked[i].first > kParked;
+    if (old || parked.size() - i > static_cast<std::size_t>(kMaxParked)) sessions_.erase(parked[i].second);
+  }
+  tell_behind(now);
+  if (now - last_sweep_ > kSweep) {
+    last_sweep_ = now;
+    sweep();
+  }
+}
+
+void Hub::end() {
+  for (auto& [connection, link] : links_) close(connection, link, 1001, Code::kUnavailable, "the server ends");
+}
+
+std::vector<Hub::Connection> Hub::take_ready() {
+  std::vector<Connection> ready(ready_.begin(), ready_.end());
+  ready_.clear();
+  return ready;
+}
+
+std::optional<Hub::Closing> Hub::closing(Connection connection) const {
+  const auto it = links_.find(connection);
+  if (it == links_.end()) return Closing{};
+  return it->second.closing;
+}
+
+void Hub::audit(const Session& session, const std::string& request, std::int64_t id, const std::string& outcome) const {
+  handlers_.audit((outcome == "OK" ? "done by=" : "refused by=") + Json(session.identity.name).dump() +
+                  " person=" + std::to_string(session.person) + " from=" + session.address + " request=" + request +
+                  " id=" + std::to_string(id) + " outcome=" + outcome);
+}
+
+}  // namespace concord::hmd

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "access/gate.hpp"
+#include "access/token_bucket.hpp"
+#include "core/transform.hpp"
+#include "protocol/control.hpp"
+#include "session/outbox.hpp"
+#include "view/client_view.hpp"
+
+namespace concord::hmd {
+
+/// What clients may do in the long run and at once; told in the hello answer.
+struct SessionLimits {
+  double requests_per_second = 30, burst_requests = 100;
+  double notices_per_second = 200, burst_notices = 400;
+  double upload_bytes_per_second = 4e6, burst_upload_bytes = 16e6;
+  /// Refusals of any kind; who goes on beyond is disconnected.
+  double refusals_per_second = 10, burst_refusals = 100;
+};
+
+/// The answers given last, for who lost a connection and asks again under an old id.
+class RecentTexts {
+ public:
+  static constexpr std::size_t kMostBytes = 1 << 20;
+  static constexpr std::size_t kMost = 256;
+
+  void keep(std::int64_t id, SharedText text);
+  [[nodiscard]] SharedText find(std::int64_t id) const;
+
+ private:
+  std::map<std::int64_t, SharedText> texts_;
+  std::deque<std::int64_t> order_;
+  std::size_t bytes_ = 0;
+};
+
+/// One client, also while its connection is lost.
+struct Session {
+  Session(std::int64_t number, std::string secret_text, Identity who, const SessionLimits& limits)
+      : person(number),
+        secret(std::move(secret_text)),
+        identity(std::move(who)),
+        requests(limits.requests_per_second, limits.burst_requests),
+        notices(limits.notices_per_second, limits.burst_notices),
+        uploads(limits.upload_bytes_per_second, limits.burst_upload_bytes) {}
+
+  std::int64_t person;
+  std::string secret;
+  Identity identity;
+  std::string device;
+  std::string address;
+  std::string agent;     ///< that it is; empty: none
+  std::string frame_id;  ///< of that agent's frame now
+
+  bool tracking_lost = false;
+  std::optional<Transform> T_own_head;
+  std::optional<Eigen::Vector3d> pointer;  ///< in the same frame
+
+  std::optional<std::int64_t> connection;  ///< nothing: lost since parked_at
+  std::int64_t parked_at = 0;
+
+  Outbox outbox;
+  TokenBucket requests, notices, uploads;
+
+  std::int64_t highest_id = 0;
+  std::map<std::int64_t, std::string> pending;  ///< request ids that wait for their answers, and what they are called
+  RecentTexts answered;
+
+  std::map<std::uint32_t, ClientView> views;  ///< by stream
+  struct Told {
+    std::int64_t revision = -1, map_revision = -1;
+    bool synced = false;
+    bool operator==(const Told&) const = default;
+  };
+  std::map<std::uint32_t, Told> told_complete;
+  std::int64_t told_skipped = 0;
+  std::map<std::string, Frame> path_frames;  ///< robots whose paths it follows, and the frame it wants them in
+  std::map<std::string, std::pair<std::string, std::int64_t>> told_paths;  ///< id and plan number, by robot
+
+  /// What it still has of stream 0 since before its connection was lost.
+  struct Kept {
+    ViewRegion region;
+    std::int64_t revision;
+  };
+  std::optional<Kept> kept;
+};
+
+}  // namespace concord::hmd

@@ -1,0 +1,151 @@
+/** Everything that the views of one map share, on a desk and in a headset. */
+import { Group } from "three";
+import type { HelloAnswer, Instance, Pose } from "../generated/messages";
+import { News } from "./base/news";
+import { Signal } from "./base/signal";
+import { kIdentity, type Vec3 } from "./base/vec";
+import { AlignSession } from "./edit/align_session";
+import { Editor } from "./edit/editor";
+import { SceneDraft } from "./edit/scene_draft";
+import type { Ask, Link } from "./link/link";
+import type { World } from "./link/world";
+import type { DetailBudget } from "./map/level_of_detail";
+import { Mesher } from "./map/mesher";
+import { Views } from "./map/views";
+import { EditOverlay } from "./scene/edit_overlay";
+import { GridSheet } from "./scene/grid_sheet";
+import { MapLayers } from "./scene/map_layers";
+import type { Stage } from "./scene/stage";
+import { WorldOverlay } from "./scene/world_overlay";
+
+const kMostInstances = 1000;
+const kSceneRadius = 10;
+
+export interface Eyes {
+  /** Where this person is, in the map. */
+  here(): Vec3;
+  /** Shows them a box of the map. */
+  lookAt(low: Vec3, high: Vec3): void;
+}
+
+export class App {
+  readonly ask: Ask;
+  readonly draft: SceneDraft;
+  readonly editor: Editor;
+  readonly align: AlignSession;
+  readonly layers: MapLayers;
+  readonly editOverlay: EditOverlay;
+  readonly grid: GridSheet;
+  readonly things = new Signal<Instance[]>([]);
+  /** Virtual obstacles that this page added, by their ids. */
+  readonly obstacles = new Signal<readonly string[]>([]);
+  private readonly views: Views;
+  private readonly own: Signal<HelloAnswer>;
+
+  constructor(
+    readonly link: Link,
+    readonly world: World,
+    readonly stage: Stage,
+    readonly news: News,
+    hello: HelloAnswer,
+    budget: DetailBudget,
+    workers: Worker[],
+  ) {
+    this.own = new Signal(hello);
+    this.ask = (name, body) => link.request(name, body);
+    this.draft = new SceneDraft(this.ask, news);
+    this.editor = new Editor(this.ask, news, this.draft);
+    this.editor.setThickness(hello.resolution);
+    this.align = new AlignSession(this.ask, (agent, resolution) => this.minimap(agent, resolution), news);
+    this.views = new Views((body) => link.request("view", body), (body) => link.request("view_close", body));
+    link.onBlocks = (frame) => this.views.apply(frame);
+    link.onEvent = (message) => {
+      this.world.hear(message);
+      this.views.hear(message);
+    };
+    const content = new Group();
+    stage.map.add(content);
+    this.layers = new MapLayers(this.views, new Mesher(workers), stage, world, hello.resolution, budget);
+    const drawn = (): void => stage.invalidate();
+    this.editOverlay = new EditOverlay(this.editor, this.draft, this.align, (target) => this.targetPose(target), hello.resolution, drawn);
+    this.grid = new GridSheet(hello.resolution, drawn);
+    content.add(this.layers.group, this.grid.group, new WorldOverlay(world, hello.resolution, drawn).group, this.editOverlay.group);
+    this.layers.changed.watch(() => this.watchLabels());
+  }
+
+  get hello(): HelloAnswer {
+    return this.own.value;
+  }
+
+  get mayEdit(): boolean {
+    return this.world.role.value !== "view";
+  }
+
+  get mayDrive(): boolean {
+    return this.world.role.value === "robot";
+  }
+
+  /** A connection began. @param keep whether blocks of the map are still good */
+  renew(hello: HelloAnswer, keep: boolean): void {
+    this.own.set(hello);
+    this.views.renew(keep);
+    for (const robot of this.world.paths.value.keys()) void this.followPath(robot, true);
+  }
+
+  async followPath(robot: string, follow: boolean): Promise<void> {
+    if (!follow) this.world.dropPath(robot);
+    const answer = await this.news.tell(this.ask("path", { robot, frame: "map", follow }), ({ path }) =>
+      follow && path.points.length === 0 ? `${robot} has no path now. ${path.message}` : null);
+    if (answer && follow) this.world.setPath(answer.path);
+  }
+
+  async addObstacle(): Promise<void> {
+    const answer = await this.editor.obstacle();
+    if (answer) this.obstacles.set([...this.obstacles.value, answer.obstacle]);
+  }
+
+  async removeObstacle(obstacle: string): Promise<void> {
+    if (await this.news.tell(this.ask("obstacle_remove", { obstacle }), () => "The obstacle is gone.")) {
+      this.obstacles.set(this.obstacles.value.filter((other) => other !== obstacle));
+    }
+  }
+
+  async loadThings(): Promise<void> {
+    const answer = await this.news.tell(this.ask("instances", { most: kMostInstances }), () => null);
+    if (!answer) return;
+    this.things.set(answer.instances);
+    this.layers.shown.get("labels")?.view.labels.setAssets(answer.instances.filter(({ asset }) => asset !== undefined));
+    this.stage.invalidate();
+  }
+
+  async sendMap(): Promise<void> {
+    await this.news.tell(this.ask("send_map", { final: false }), ({ occupied }) => `Your map was sent: ${occupied} voxels.`);
+  }
+
+  async getScene(): Promise<void> {
+    await this.draft.get(this.eyes.here(), kSceneRadius);
+  }
+
+  /** Whose eyes these are: the desk's or the headset's. */
+  eyes: Eyes = { here: () => [0, 0, 0], lookAt: () => {} };
+
+  private targetPose(target: string | undefined): Pose | null {
+    return target === undefined ? kIdentity : (this.world.agent(target)?.T_map_agent ?? null);
+  }
+
+  private async minimap(agent: string, resolution: number): ReturnType<ConstructorParameters<typeof AlignSession>[1]> {
+    const { frame } = await this.link.requestFrame("minimap", { agent, resolution });
+    return frame?.kind === "points" ? frame : undefined;
+  }
+
+  private readonly watched = new WeakSet<object>();
+  /** Which things are assets is asked for whenever the labels have changed. */
+  private watchLabels(): void {
+    const view = this.layers.shown.get("labels")?.view;
+    if (!view || this.watched.has(view)) return;
+    this.watched.add(view);
+    view.complete.onChange((complete) => {
+      if (complete) void this.loadThings();
+    });
+  }
+}

@@ -1,0 +1,184 @@
+/** The person's selection and what is done with it; undo and redo; the lease while they work. */
+import type { EditOp, Requests, Answers, Shape, Volume, ZoneKind } from "../../generated/messages";
+import { counted, type News } from "../base/news";
+import type { Ask } from "../link/link";
+import { Signal } from "../base/signal";
+import type { Vec3 } from "../base/vec";
+import { begun, boundsOf, ended, shapeOf, volumeOf, withoutLast, withPoint, type Selection, type Tool } from "./selection";
+import type { SceneDraft } from "./scene_draft";
+
+const kLease = "selection";
+const kLeaseMs = 5000;
+const kLeaseMargin = 0.1;
+
+export class Editor {
+  readonly selection = new Signal<Selection | null>(null);
+  /** Why nothing can be changed now; null if it can. */
+  readonly blocked = new Signal<string | null>(null);
+  /** Somebody waits for one point of the map. */
+  readonly question = new Signal<{ hint: string; answer: (p: Vec3 | null) => void } | null>(null);
+  readonly height = new Signal<number | null>(2);
+  readonly thickness = new Signal(0.05);
+  readonly undoable = new Signal<readonly string[]>([]);
+  readonly redoable = new Signal<readonly string[]>([]);
+  private leased = false;
+
+  constructor(
+    private readonly ask: Ask,
+    private readonly news: News,
+    private readonly draft: SceneDraft,
+  ) {
+    this.selection.onChange(() => this.lease());
+    setInterval(() => this.lease(), kLeaseMs);
+  }
+
+  begin(tool: Tool): void {
+    this.selection.set(begun(tool, this.thickness.value, this.height.value));
+  }
+
+  /** The next point of what is being selected, or the answer to what was asked. */
+  point(p: Vec3): void {
+    const question = this.question.value;
+    if (question) {
+      this.question.set(null);
+      question.answer(p);
+      return;
+    }
+    const selection = this.selection.value;
+    if (selection) this.selection.set(withPoint(selection, p));
+  }
+
+  end(): void {
+    if (this.selection.value) this.selection.set(ended(this.selection.value));
+  }
+
+  back(): void {
+    const selection = this.selection.value;
+    if (!selection) return;
+    this.selection.set(selection.points.length > 0 ? withoutLast(selection) : null);
+  }
+
+  cancel(): void {
+    this.question.value?.answer(null);
+    this.question.set(null);
+    this.selection.set(null);
+  }
+
+  setHeight(height: number | null): void {
+    this.height.set(height);
+    if (this.selection.value) this.selection.set({ ...this.selection.value, height });
+  }
+
+  setThickness(thickness: number): void {
+    this.thickness.set(thickness);
+    if (this.selection.value) this.selection.set({ ...this.selection.value, thickness });
+  }
+
+  /** A point of the map that the person shows; null if they would rather not. */
+  askPoint(hint: string): Promise<Vec3 | null> {
+    this.cancel();
+    return new Promise((answer) => this.question.set({ hint, answer }));
+  }
+
+  /** @param move metres, for op move */
+  async apply(op: EditOp, move?: Vec3): Promise<void> {
+    const shape = this.shape();
+    if (!shape) return;
+    if (this.draft.open.value && op !== "move") {
+      this.draft.addEdit({ op, shape });
+      this.cancel();
+      return this.news.done("Added to your scene. Send Scene sends it to everybody.");
+    }
+    const body: Requests["edit"] = { op, frame: "map", shape, ...(move ? { move } : {}) };
+    const words = { add: "added", delete: "cleared", move: "moved" }[op];
+    const answer = await this.news.tell(this.ask("edit", body), ({ voxels }) => `${counted(voxels, "voxel")} ${words}.`);
+    if (!answer) return;
+    this.undoable.set([...this.undoable.value, answer.edit]);
+    this.redoable.set([]);
+    this.cancel();
+  }
+
+  async undo(): Promise<void> {
+    const edit = this.undoable.value.at(-1);
+    if (edit === undefined) return this.news.failed("You have nothing to undo. Others' changes are in History.");
+    if (!(await this.news.tell(this.ask("undo", { edit }), ({ voxels }) => `Undone: ${counted(voxels, "voxel")}.`))) return;
+    this.undoable.set(this.undoable.value.filter((other) => other !== edit));
+    this.redoable.set([...this.redoable.value, edit]);
+  }
+
+  async redo(): Promise<void> {
+    const edit = this.redoable.value.at(-1);
+    if (edit === undefined) return this.news.failed("There is nothing to redo.");
+    if (!(await this.news.tell(this.ask("redo", { edit }), ({ voxels }) => `Done again: ${counted(voxels, "voxel")}.`))) return;
+    this.redoable.set(this.redoable.value.filter((other) => other !== edit));
+    this.undoable.set([...this.undoable.value, edit]);
+  }
+
+  async label(className: string): Promise<void> {
+    const shape = this.shape();
+    if (!shape) return;
+    const asked = this.ask("label", { frame: "map", shape, class_name: className });
+    if (await this.news.tell(asked, ({ voxels, instance }) => `${counted(voxels, "voxel")} labelled as ${className} ${instance}.`)) this.cancel();
+  }
+
+  async zone(name: string, kind: ZoneKind): Promise<void> {
+    const volume = this.volume();
+    if (!volume) return;
+    if (this.draft.open.value) {
+      this.draft.addZone({ name, zone_kind: kind, volume });
+      this.cancel();
+      return this.news.done("The zone was added to your scene.");
+    }
+    const asked = this.ask("zone_add", { name, zone_kind: kind, frame: "map", volume });
+    if (await this.news.tell(asked, () => `Zone ${name} added.`)) this.cancel();
+  }
+
+  /** Gives a zone the selected volume. @param revision that it was seen at */
+  async reshapeZone(name: string, kind: ZoneKind, revision: number): Promise<void> {
+    const volume = this.volume();
+    if (!volume) return;
+    const asked = this.ask("zone_change", { name, zone_kind: kind, frame: "map", volume, base_revision: revision });
+    if (await this.news.tell(asked, () => `Zone ${name} has another shape.`)) this.cancel();
+  }
+
+  async obstacle(): Promise<Answers["obstacle_add"] | null> {
+    const volume = this.volume();
+    if (!volume) return null;
+    const answer = await this.news.tell(this.ask("obstacle_add", { frame: "map", volume }), ({ paths }) => {
+      const other = paths.filter(({ replanned }) => replanned).map(({ robot }) => robot);
+      return other.length > 0 ? `Obstacle added; another way for ${other.join(", ")}.` : "Obstacle added; no path crossed it.";
+    });
+    if (answer) this.cancel();
+    return answer;
+  }
+
+  private shape(): Shape | null {
+    const shape = this.selection.value && shapeOf(this.selection.value);
+    if (!shape) this.news.failed("Select something first: take a tool and click its points.");
+    return this.permitted() ? shape : null;
+  }
+
+  private volume(): Volume | null {
+    const volume = this.selection.value && volumeOf(this.selection.value);
+    if (!volume) this.news.failed("Select a box or a prism first.");
+    return this.permitted() ? volume : null;
+  }
+
+  private permitted(): boolean {
+    if (this.blocked.value !== null) this.news.failed(this.blocked.value);
+    return this.blocked.value === null;
+  }
+
+  /** Keeps others out of where this person works; that it could not be had is told when they apply something. */
+  private lease(): void {
+    const shape = this.selection.value && shapeOf(this.selection.value);
+    const volume = shape && boundsOf(shape, kLeaseMargin);
+    if (volume && this.blocked.value === null) {
+      this.leased = true;
+      this.ask("lease_hold", { lease: kLease, frame: "map", volume }).catch(() => {});
+    } else if (this.leased) {
+      this.leased = false;
+      this.ask("lease_free", { lease: kLease }).catch(() => {});
+    }
+  }
+}

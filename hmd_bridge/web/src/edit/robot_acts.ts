@@ -1,0 +1,43 @@
+/** What a person asks of one robot, by showing places of the map. */
+import type { Path } from "../../generated/messages";
+import type { App } from "../app";
+import { fromYaw, type Vec3 } from "../base/vec";
+
+export function pathWords({ status, message, length, clearance, plan_number }: Path): string {
+  if (status !== "OK") return message || status;
+  return `${length.toFixed(1)} m, at least ${clearance.toFixed(2)} m of room${plan_number > 1 ? `, planned ${plan_number} times` : ""}`;
+}
+
+export async function whatIf(app: App, robot: string): Promise<void> {
+  const goal = await app.editor.askPoint(`Click where ${robot} would go.`);
+  if (!goal) return;
+  const answer = await app.news.tell(app.ask("plan", { robot, frame: "map", goal }), ({ path }) => pathWords(path));
+  if (answer) app.world.setPath(answer.path);
+}
+
+export async function send(app: App, robot: string): Promise<void> {
+  const goal = await app.editor.askPoint(`Click where ${robot} shall go.`);
+  if (!goal) return;
+  const T_frame_goal = { position: goal, rotation: fromYaw(0) };
+  const answer = await app.news.tell(app.ask("goal", { robot, frame: "map", T_frame_goal }), ({ path }) => `${robot} is on its way: ${pathWords(path)}.`);
+  if (answer) app.world.setPath(answer.path);
+}
+
+/** The person shows where they see a robot; from that their device finds where it is. @param toOwn from the map to the device's own frame */
+export async function refer(app: App, robot: string, toOwn: (p: Vec3) => Vec3): Promise<void> {
+  const at = await app.editor.askPoint(`Click where you see ${robot}.`);
+  const ahead = at && (await app.editor.askPoint(`Click a place straight ahead of ${robot}.`));
+  if (!ahead) return;
+  const [from, to] = [toOwn(at), toOwn(ahead)];
+  await app.align.refer(robot, { position: from, rotation: fromYaw(Math.atan2(to[1] - from[1], to[0] - from[0])) });
+}
+
+export async function correct(app: App, robot: string): Promise<void> {
+  const at = await app.editor.askPoint(`Click where ${robot} really stands.`);
+  const ahead = at && (await app.editor.askPoint(`Click a place straight ahead of ${robot}.`));
+  if (!ahead) return;
+  const T_frame_base = { position: at, rotation: fromYaw(Math.atan2(ahead[1] - at[1], ahead[0] - at[0])) };
+  const utime = app.link.clock.utime(Date.now());
+  await app.news.tell(app.ask("robot_correct", { robot, frame: "map", T_frame_base, utime }), () => `${robot} is placed there, and its map with it.`);
+}
+

@@ -1,0 +1,55 @@
+/**
+ * Get Scene and Send Scene: a person takes what is around them, prepares changes in peace, and sends them all at once; the
+ * server refuses them where somebody else changed something meanwhile.
+ */
+import type { Requests, SceneEdit, SceneZone } from "../../generated/messages";
+import { counted, type News } from "../base/news";
+import { Signal } from "../base/signal";
+import type { Vec3 } from "../base/vec";
+import type { Ask } from "../link/link";
+
+export interface Draft {
+  revision: number;
+  voxelBoxes: number;
+  edits: SceneEdit[];
+  zones: SceneZone[];
+}
+
+const kMost = 64;
+
+export class SceneDraft {
+  readonly open = new Signal<Draft | null>(null);
+
+  constructor(
+    private readonly ask: Ask,
+    private readonly news: News,
+  ) {}
+
+  async get(centre: Vec3, radius: number): Promise<void> {
+    const asked = this.ask("scene_get", { frame: "map", centre, radius });
+    const scene = await this.news.tell(asked, ({ voxels, zones }) => `Scene taken: ${counted(voxels.boxes.length, "box")} of voxels, ${counted(zones.length, "zone")}. Your edits wait until Send Scene.`);
+    if (scene) this.open.set({ revision: scene.revision, voxelBoxes: scene.voxels.boxes.length, edits: [], zones: [] });
+  }
+
+  addEdit(edit: SceneEdit): void {
+    const draft = this.open.value;
+    if (draft && draft.edits.length < kMost) this.open.set({ ...draft, edits: [...draft.edits, edit] });
+  }
+
+  addZone(zone: SceneZone): void {
+    const draft = this.open.value;
+    if (draft && draft.zones.length < kMost) this.open.set({ ...draft, zones: [...draft.zones, zone] });
+  }
+
+  async send(): Promise<void> {
+    const draft = this.open.value;
+    if (!draft) return this.news.failed("There is no scene to send. Get Scene takes the one around you.");
+    const body: Requests["scene_send"] = { base_revision: draft.revision, frame: "map", edits: draft.edits, zones: draft.zones };
+    const asked = this.ask("scene_send", body);
+    if (await this.news.tell(asked, ({ edits, zones }) => `Scene sent: ${counted(edits.length, "change")}, ${counted(zones, "zone")}.`)) this.open.set(null);
+  }
+
+  discard(): void {
+    this.open.set(null);
+  }
+}

@@ -1,0 +1,102 @@
+/** Labelled things, assets that can be put into the map, and what detectors propose. */
+import type { App } from "../app";
+import type { Asset, Instance, Label } from "../../generated/messages";
+import { button, el, live, none, section } from "../base/dom";
+import { counted } from "../base/news";
+import { Signal } from "../base/signal";
+import { fromYaw, type Vec3 } from "../base/vec";
+
+export function thingsPanel(app: App): HTMLElement {
+  return el("div", {}, detectionsSection(app), instancesSection(app), classesSection(app), assetsSection(app));
+}
+
+function detectionsSection(app: App): HTMLElement {
+  const { detections } = app.world;
+  const list = live((redraw) => detections.watch(redraw), () => {
+    if (detections.value.length === 0) return [none("Nothing waits for your decision.")];
+    return detections.value.map(({ detection, class_name, score, by }) =>
+      el("article", {}, el("p", {}, `${class_name}, seen by ${by}, ${Math.round(score * 100)} % sure`),
+        el("div", { class: "row" },
+          button("It is there", () => void app.news.tell(app.ask("detection_confirm", { detection }), () => `${class_name} was put into the map.`), { class: "main", disabled: !app.mayEdit }),
+          button("It is not", () => void app.news.tell(app.ask("detection_reject", { detection }), () => "Rejected."), { disabled: !app.mayEdit }))));
+  });
+  return section("Detected", list);
+}
+
+function instancesSection(app: App): HTMLElement {
+  const list = live((redraw) => app.things.watch(redraw), () => {
+    if (app.things.value.length === 0) return [none("Nothing is labelled yet.")];
+    return app.things.value.map((thing) => thingCard(app, thing));
+  });
+  return section("Labelled things", button("Refresh", () => void app.loadThings()), list);
+}
+
+function thingCard(app: App, thing: Instance): HTMLElement {
+  const { label, instance, class_name, voxels, min, max, asset } = thing;
+  const remove = (keep: boolean): void => {
+    const asked: Promise<unknown> = asset === undefined ? app.ask("instance_delete", { label, instance, keep_voxels: keep }) : app.ask("asset_delete", { label, instance });
+    void app.news.tell(asked, () => `${class_name} ${instance} is gone.`).then(() => app.loadThings());
+  };
+  const acts = asset === undefined
+    ? [button("Drop label", () => remove(true), { disabled: !app.mayEdit }), button("Delete", () => remove(false), { class: "danger", disabled: !app.mayEdit })]
+    : [button("Move…", () => void moveAsset(app, thing), { disabled: !app.mayEdit }), button("Delete", () => remove(false), { class: "danger", disabled: !app.mayEdit })];
+  return el("article", {},
+    el("header", {}, el("strong", {}, `${class_name} ${instance}`), el("span", { class: asset === undefined ? "badge label" : "badge asset" }, asset === undefined ? "label" : "asset")),
+    el("p", { class: "quiet" }, counted(voxels, "voxel")),
+    el("div", { class: "row" }, button("Look", () => app.eyes.lookAt(min, max)), ...acts));
+}
+
+/** Classes of things, each of which can be taken away as a whole. */
+function classesSection(app: App): HTMLElement {
+  const labels = new Signal<Label[] | null>(null);
+  const refresh = async (): Promise<void> => {
+    const answer = await app.news.tell(app.ask("labels", {}), () => null);
+    if (answer) labels.set(answer.labels);
+  };
+  const remove = async ({ label, name }: Label): Promise<void> => {
+    const asked = app.ask("label_delete", { label, keep_voxels: true });
+    if (await app.news.tell(asked, ({ voxels }) => `${name} is no label any more; ${counted(voxels, "voxel")} stay as they are.`)) await refresh();
+  };
+  const list = live((redraw) => labels.watch(redraw), () => {
+    if (!labels.value) return [];
+    if (labels.value.length === 0) return [none("There are no labels.")];
+    return labels.value.map((label) =>
+      el("div", { class: "row between" }, `${label.name}: ${counted(label.instances, "thing")}`,
+        button("Drop", () => void remove(label), { class: "danger", disabled: !app.mayEdit, "aria-label": `Drop the label ${label.name}` })));
+  });
+  return section("Labels", button("List labels", () => void refresh()), list);
+}
+
+async function moveAsset(app: App, { label, instance, class_name }: Instance): Promise<void> {
+  const position = await app.editor.askPoint(`Click where ${class_name} ${instance} shall stand.`);
+  if (!position) return;
+  const asked = app.ask("asset_move", { label, instance, frame: "map", T_frame_asset: { position, rotation: fromYaw(0) } });
+  if (await app.news.tell(asked, () => `${class_name} ${instance} was moved.`)) await app.loadThings();
+}
+
+function assetsSection(app: App): HTMLElement {
+  const assets = new Signal<Asset[] | null>(null);
+  const refresh = async (): Promise<void> => {
+    const answer = await app.news.tell(app.ask("assets", {}), () => null);
+    if (answer) assets.set(answer.assets);
+  };
+  const list = live((redraw) => assets.watch(redraw), () => {
+    if (!assets.value) return [];
+    if (assets.value.length === 0) return [none("The server has no assets.")];
+    return assets.value.map((asset) => assetCard(app, asset));
+  });
+  return section("Assets", button("List assets", () => void refresh()), list);
+}
+
+function assetCard(app: App, { asset, class_name, size }: Asset): HTMLElement {
+  const turn = el("input", { type: "number", value: 0, step: 15, class: "short", "aria-label": `Heading of ${asset}, degrees` });
+  const put = async (): Promise<void> => {
+    const position: Vec3 | null = await app.editor.askPoint(`Click where the ${class_name} shall stand.`);
+    if (!position) return;
+    const T_frame_asset = { position, rotation: fromYaw((Number(turn.value) * Math.PI) / 180) };
+    const asked = app.ask("asset_add", { asset, frame: "map", T_frame_asset });
+    if (await app.news.tell(asked, ({ instance, voxels }) => `${class_name} ${instance}: ${counted(voxels, "voxel")}.`)) await app.loadThings();
+  };
+  return el("article", {}, el("header", {}, el("strong", {}, asset), el("span", { class: "quiet" }, `${size.map((edge) => edge.toFixed(2)).join(" × ")} m`)),
+    el("div", { class: "row" }, turn, "degrees", button("Put into the map…", () => void put(), { class: "main", disabled: !app.mayEdit })));
+}

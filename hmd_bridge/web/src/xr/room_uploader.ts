@@ -1,0 +1,65 @@
+/** Sends the room to the bridge, look by look, one under way at a time. */
+import type { Pose } from "../../generated/messages";
+import type { News } from "../base/news";
+import { Signal } from "../base/signal";
+import { RefusedError } from "../link/failures";
+import type { Link } from "../link/link";
+import { meshFrame, packPayload, type RoomMesh } from "../protocol/frames";
+import { payloads } from "./room_scan";
+
+const kLookMs = 500;
+
+export class RoomUploader {
+  /** Occupied voxels of the own submap so far. */
+  readonly occupied = new Signal(0);
+  readonly looks = new Signal(0);
+  private sequence = 0;
+  private busy = false;
+  private last = -Infinity;
+
+  constructor(
+    private readonly link: Link,
+    private readonly news: News,
+    /** Called when what was sent before counts no more: all meshes are to be sent again. */
+    private readonly anew: () => void,
+  ) {}
+
+  /** Whether a look can be taken now. @param now milliseconds */
+  due(now: number): boolean {
+    return !this.busy && now - this.last >= kLookMs && this.link.state.value.state === "ready";
+  }
+
+  /** @param sensor T_own_sensor, z up */
+  async send(sensor: Pose, meshes: readonly RoomMesh[], now: number): Promise<void> {
+    this.busy = true;
+    this.last = now;
+    try {
+      for (const part of payloads(sensor, meshes)) {
+        const packed = await packPayload(part.payload);
+        const sequence = this.sequence++;
+        const { occupied } = await this.link.upload((id) => meshFrame(id, sequence, part.meshes, packed));
+        this.occupied.set(occupied);
+        this.looks.set(this.looks.value + 1);
+      }
+    } catch (error) {
+      this.failed(error);
+    } finally {
+      this.busy = false;
+    }
+  }
+
+  /** The own frame is another. */
+  restart(): void {
+    this.sequence = 0;
+    this.occupied.set(0);
+    this.anew();
+  }
+
+  private failed(error: unknown): void {
+    const code = error instanceof RefusedError ? error.refusal.code : null;
+    if (code === "DUP_SEQ") return; // it came before: the next number is a new one
+    this.anew();
+    // While tracking is lost, or the connection, the person is told elsewhere.
+    if (code !== null && code !== "TRACKING_LOST") this.news.failed((error as RefusedError).message);
+  }
+}

@@ -1,0 +1,111 @@
+// What is looked at: views, the grid, history; saved maps.
+
+#include <fstream>
+
+#include "bridge_test.hpp"
+
+namespace concord::hmd {
+namespace {
+
+TEST_F(Working, AViewComesWholeThenJustWhatChanges) {
+  EXPECT_CODE(ana.ask(ViewRequest{Layer::kMap, {}, Frame::kMap, {0, 0, 0}, {100}, {}}), "OK");
+  lab.run(0.2);
+  ana.read();
+  int voxels = 0;
+  for (const BinaryFrame& frame : ana.frames) {
+    const BlockContent content = read_block(frame).value();
+    for (const ChunkBits& bits : content.chunks) {
+      for (const std::uint8_t byte : bits) voxels += std::popcount(byte);
+    }
+  }
+  EXPECT_EQ(voxels, 64 * 64);
+  EXPECT_EQ(ana.events["complete"]["stream"], 0);
+  ana.frames.clear();
+  EXPECT_CODE(ana.ask(add(Voxels{0.1, {{{20, 20, 3, 20, 20, 3}}}})), "OK");
+  lab.run(0.5);
+  ana.read();
+  ASSERT_EQ(ana.frames.size(), 1u);
+  EXPECT_EQ(read_block(ana.frames[0])->chunks.size(), 1u);
+  EXPECT_LT(ana.frames[0].payload.size(), 600u);
+  EXPECT_CODE(ana.ask(ViewRequest{Layer::kAgent, "robot1", Frame::kMap, {0, 0, 0}, {0, 0, 100}, {}}), "OK");
+  EXPECT_CODE(ana.ask(ViewRequest{Layer::kAgent, "nobody", Frame::kMap, {0, 0, 0}, {100}, {}}), "NO_AGENT");
+  EXPECT_CODE(ana.ask(ViewRequest{Layer::kMap, {}, Frame::kMap, {0, 0, 0}, {5, 2}, {}}), "BAD_REQUEST");
+  EXPECT_CODE(ana.ask(ViewRequest{Layer::kMap, {}, Frame::kOwn, {0, 0, 0}, {5}, {}}), "BAD_FRAME");
+  EXPECT_CODE(ana.ask(ViewCloseRequest{0}), "OK");
+  EXPECT_CODE(ana.ask(ViewCloseRequest{0}), "NOT_FOUND");
+}
+
+TEST_F(Working, CompleteIsSaidWhenTheBlocksHaveComeAndNotBefore) {
+  EXPECT_CODE(ana.ask(ViewRequest{Layer::kMap, {}, Frame::kMap, {0, 0, 0}, {100}, {}}), "OK");
+  lab.run(0.2);
+  ana.read();
+  const std::int64_t before = ana.events["complete"]["revision"];
+  ana.frames.clear();
+  const std::string edit = request_text(ana.next_id(), add(Voxels{0.1, {{{20, 20, 3, 20, 20, 3}}}}));
+  lab.bridge->hub().text(ana.connection, edit, lab.bus->now());
+  const bool said = lab.run_until(2, [&] {
+    ana.read();
+    return ana.events["complete"]["revision"] > before;
+  });
+  ASSERT_TRUE(said);
+  EXPECT_EQ(ana.frames.size(), 1u);
+}
+
+TEST_F(Working, WithoutCreditNoBlockComes) {
+  Client bert(lab);
+  HelloRequest hello;
+  hello.version = kProtocol;
+  EXPECT_CODE(bert.ask(hello), "OK");
+  EXPECT_CODE(bert.ask(ViewRequest{Layer::kMap, {}, Frame::kMap, {0, 0, 0}, {100}, {}}), "OK");
+  lab.run(1);
+  bert.read();
+  EXPECT_TRUE(bert.frames.empty());
+  bert.note(CreditNotice{400});
+  EXPECT_LE(bert.bytes, 400);
+  bert.note(CreditNotice{1'000'000});
+  EXPECT_FALSE(bert.frames.empty());
+}
+
+TEST_F(Working, TheGridBetweenTwoHeightsComesAsCells) {
+  const Json answer = ana.ask(GridRequest{{0.1, 0.8}});
+  EXPECT_CODE(answer, "OK");
+  EXPECT_EQ(answer["answer"]["free"], 64 * 64);
+  EXPECT_EQ(answer["answer"]["occupied"], 0);
+  ASSERT_EQ(ana.frames.size(), 1u);
+  EXPECT_EQ(ana.frames[0].head.kind, FrameKind::kCells);
+  EXPECT_EQ(ana.ask(GridRequest{{-0.1, 0.1}})["answer"]["occupied"], 64 * 64);
+  EXPECT_CODE(ana.ask(GridRequest{{5, 6}}), "NO_MAP");
+  EXPECT_CODE(ana.ask(GridRequest{{1, 1}}), "OUT_OF_BOUNDS");
+}
+
+TEST_F(Working, HistoryTellsWhoDidWhat) {
+  EXPECT_CODE(ana.ask(add(box(1, 1, 0.2, 1.5, 1.5, 0.5))), "OK");
+  const Json answer = ana.ask(HistoryRequest{{}, {}, {}, {}, 100});
+  EXPECT_CODE(answer, "OK");
+  ASSERT_EQ(answer["answer"]["operations"].size(), 2u) << "a placement and an edit";
+  EXPECT_EQ(answer["answer"]["operations"][1]["author"], "ana");
+}
+
+TEST_F(Working, MapsAreSavedListedAndLoaded) {
+  const SaveRequest save{"hall", {Format::kBt, Format::kConcord}, false};
+  lab.run(3);
+  const Json saved = ana.ask(save);
+  EXPECT_CODE(saved, "OK");
+  EXPECT_EQ(saved["answer"]["files"].size(), 2u);
+  EXPECT_CODE(ana.ask(save), "EXISTS");
+  EXPECT_EQ(ana.ask(MapsRequest{})["answer"]["maps"].size(), 2u);
+  const std::int64_t id = ana.next_id();
+  const Json climb = {
+      {"id", id}, {"request", "save"}, {"body", {{"map", "../x"}, {"formats", {"bt"}}, {"overwrite", false}}}};
+  EXPECT_CODE(ana.ask_text(id, climb.dump()), "BAD_NAME") << "no name is a path";
+  std::filesystem::create_directories(lab.site.state / "maps" / "busy.bt" / "in the way");
+  EXPECT_CODE(ana.ask(SaveRequest{"busy", {Format::kBt}, true}), "IO");
+  EXPECT_CODE(ana.ask(LoadRequest{"hall", Format::kBt, "copy"}), "OK");
+  EXPECT_CODE(ana.ask(LoadRequest{"hall", Format::kBt, "copy"}), "EXISTS");
+  EXPECT_CODE(ana.ask(LoadRequest{"none", {}, {}}), "NOT_FOUND");
+  std::ofstream(lab.site.state / "maps" / "broken.bt") << "no map";
+  EXPECT_CODE(ana.ask(LoadRequest{"broken", {}, {}}), "CORRUPT");
+}
+
+}  // namespace
+}  // namespace concord::hmd

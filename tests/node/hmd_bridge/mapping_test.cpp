@@ -1,0 +1,120 @@
+// The headset as mapper, and agents.
+
+#include "bridge_test.hpp"
+
+namespace concord::hmd {
+namespace {
+
+TEST_F(Bridge, VoxelsOfADeviceBecomeItsSubmap) {
+  become_agent(ana, "hololens", false);
+  const Json answer = ana.upload(FrameKind::kVoxels, 1, 0, voxels_payload(voxel_look(0.1, true)));
+  EXPECT_CODE(answer, "OK");
+  EXPECT_EQ(answer["answer"]["occupied"], 8);
+  lab.run(3);
+  const Json agents = ana.ask(AgentsRequest{})["answer"]["agents"];
+  ASSERT_EQ(agents.size(), 1u);
+  EXPECT_EQ(agents[0]["occupied"], 8) << agents;
+  EXPECT_CODE(ana.upload(FrameKind::kVoxels, 1, 0, voxels_payload(voxel_look(0.1, true))), "DUP_SEQ");
+  EXPECT_CODE(ana.upload(FrameKind::kVoxels, 1, 1, voxels_payload(voxel_look(0.05, true))), "RES_MISMATCH");
+  EXPECT_CODE(ana.upload(FrameKind::kVoxels, 1, 1, voxels_payload(voxel_look(0.1, false))), "EMPTY");
+  ana.note(TrackingNotice{Tracking::kLost, {}, {}, {}});
+  EXPECT_CODE(ana.upload(FrameKind::kVoxels, 1, 1, voxels_payload(voxel_look(0.1, true))), "TRACKING_LOST");
+  Client bert(lab);
+  EXPECT_CODE(bert.hello(), "OK");
+  EXPECT_CODE(bert.upload(FrameKind::kVoxels, 1, 1, voxels_payload(voxel_look(0.1, true))), "BAD_FRAME");
+}
+
+TEST_F(Bridge, AScannedMeshBecomesASubmapWithFreeSpace) {
+  become_agent(ana, "quest", false);
+  EXPECT_CODE(ana.ask(SendMapRequest{false}), "EMPTY");
+  EXPECT_CODE(ana.upload(FrameKind::kMesh, 1, 0, mesh_payload(floor_look())), "OK");
+  EXPECT_CODE(ana.ask(SendMapRequest{false}), "EMPTY") << "a cell needs two looks";
+  EXPECT_CODE(ana.upload(FrameKind::kMesh, 0, 1, mesh_payload({floor_look().T_own_sensor, {}})), "OK");
+  const Json sent = ana.ask(SendMapRequest{true});
+  EXPECT_CODE(sent, "OK");
+  EXPECT_EQ(sent["answer"]["occupied"], 21 * 21 - 0)
+      << "a floor of 2 m in cells of 0.1 m, its far edges touch one more";
+  EXPECT_GT(sent["answer"]["free"].get<int>(), 1000);
+  EXPECT_CODE(ana.upload(FrameKind::kMesh, 1, 0, mesh_payload(floor_look())), "OK")
+      << "after the final one, sequences begin anew";
+  EXPECT_CODE(ana.upload(FrameKind::kMesh, 1, 0, mesh_payload(floor_look())), "DUP_SEQ");
+}
+
+TEST_F(Working, ResetAndRemoveEndAnAgent) {
+  EXPECT_CODE(ana.ask(ResetRequest{"nobody"}), "NO_AGENT");
+  EXPECT_CODE(ana.ask(ResetRequest{"robot1"}), "OK");
+  EXPECT_CODE(ana.ask(RemoveRequest{"nobody"}), "NO_AGENT");
+}
+
+TEST_F(Bridge, AfterAResetTheFrameIsOver) {
+  become_agent(ana, "quest", false);
+  EXPECT_CODE(ana.upload(FrameKind::kMesh, 1, 0, mesh_payload(floor_look())), "OK");
+  EXPECT_CODE(ana.upload(FrameKind::kMesh, 1, 1, mesh_payload(floor_look())), "OK");
+  lab.run(2);
+  EXPECT_CODE(ana.ask(ResetRequest{"quest"}), "OK");
+  lab.run(1);
+  EXPECT_CODE(ana.upload(FrameKind::kMesh, 1, 2, mesh_payload(floor_look())), "BAD_FRAME");
+  ana.note(TrackingNotice{Tracking::kOk, "local2", kHere, {}});
+  EXPECT_CODE(ana.upload(FrameKind::kMesh, 1, 0, mesh_payload(floor_look())), "OK");
+}
+
+TEST_F(Working, AgentsAreListed) {
+  const Json agents = ana.ask(AgentsRequest{})["answer"]["agents"];
+  ASSERT_EQ(agents.size(), 1u);
+  EXPECT_EQ(agents[0]["agent"], "robot1");
+  EXPECT_TRUE(agents[0]["aligned"]);
+  EXPECT_CODE(ana.ask(WeightRequest{"robot1", 7}), "OK");
+  EXPECT_CODE(ana.ask(WeightRequest{"nobody", 7}), "NO_AGENT");
+  EXPECT_CODE(ana.ask(WeightRequest{"robot1", 0}), "BAD_REQUEST");
+}
+
+TEST_F(Working, AMinimapComesAsPointsBeforeItsAnswer) {
+  const Json answer = ana.ask(MinimapRequest{"robot1", 0.5});
+  EXPECT_CODE(answer, "OK");
+  ASSERT_EQ(ana.frames.size(), 1u);
+  EXPECT_EQ(ana.frames[0].head.kind, FrameKind::kPoints);
+  EXPECT_EQ(ana.frames[0].head.stream, ana.last_id());
+  EXPECT_EQ(ana.frames[0].head.count, answer["answer"]["points"]);
+  EXPECT_EQ(answer["answer"]["points"], 13 * 13);
+  EXPECT_CODE(ana.ask(MinimapRequest{"nobody", 0.5}), "NO_AGENT");
+  lab.bus->publish("in/cart/pose", encode(AgentPose{"cart", "odom", Transform::Identity(), lab.bus->now()}));
+  lab.run(1.5);
+  EXPECT_CODE(ana.ask(MinimapRequest{"cart", 0.5}), "NO_MAP") << "it sends nothing but where it is";
+  EXPECT_CODE(ana.ask(MinimapRequest{"robot1", 0.01}), "RES_MISMATCH");
+}
+
+TEST_F(Working, APlacementCanBeTakenBack) {
+  EXPECT_CODE(ana.ask(AlignUndoRequest{"robot1"}), "EXPIRED") << "it had no place before";
+  EXPECT_CODE(ana.ask(PlaceRequest{"robot1", Pose{{0, 0, 1}, {0, 0, 0, 1}}}), "OK");
+  lab.run(1.5);
+  const Json back = ana.ask(AlignUndoRequest{"robot1"});
+  EXPECT_CODE(back, "OK");
+  lab.run(1.5);
+  EXPECT_EQ(ana.ask(AgentsRequest{})["answer"]["agents"][0]["T_map_agent"]["position"], Json({0.0, 0.0, 0.0}));
+  EXPECT_CODE(ana.ask(AlignUndoRequest{"robot1"}), "EXPIRED");
+  EXPECT_CODE(ana.ask(PlaceRequest{"nobody", kHere}), "NO_AGENT");
+  EXPECT_CODE(ana.ask(PlaceRequest{"robot1", Pose{{9000, 0, 0}, {0, 0, 0, 1}}}), "OUT_OF_BOUNDS");
+}
+
+TEST_F(Working, UnalignedHeadsetsCannotWorkInTheirFrame) {
+  Client bert(lab);
+  become_agent(bert, "quest", false);
+  EXPECT_CODE(bert.ask(ViewRequest{Layer::kMap, {}, Frame::kOwn, {0, 0, 0}, {5}, {}}), "UNALIGNED");
+  EXPECT_CODE(bert.ask(EditRequest{EditOp::kAdd, Frame::kOwn, box(1, 1, 0.2, 1.2, 1.2, 0.4), {}, {}}), "UNALIGNED");
+}
+
+TEST_F(Working, ConflictsAreListed) {
+  Client bert(lab);
+  become_agent(bert, "quest", true);
+  EXPECT_CODE(bert.upload(FrameKind::kVoxels, 1, 0, voxels_payload(voxel_look(0.1, true))), "OK");
+  lab.run(4);
+  EXPECT_CODE(bert.ask(PlaceRequest{"quest", Pose{{1, 1, 0}, {0, 0, 0, 1}}}), "OK");
+  lab.run(3);
+  const Json answer = ana.ask(ConflictsRequest{10});
+  EXPECT_CODE(answer, "OK");
+  EXPECT_EQ(answer["answer"]["voxels_in_all"], 8) << answer;
+  EXPECT_CODE(ana.ask(ConflictsRequest{0}), "BAD_REQUEST");
+}
+
+}  // namespace
+}  // namespace concord::hmd

@@ -1,0 +1,174 @@
+// Who is in, as whom, and what becomes of a session.
+
+#include "bridge_test.hpp"
+
+namespace concord::hmd {
+namespace {
+
+TEST_F(Bridge, HelloAnswersWithRoleAndLimits) {
+  const Json answer = ana.hello()["answer"];
+  EXPECT_EQ(answer["role"], "robot");
+  EXPECT_EQ(answer["resolution"], 0.1);
+  EXPECT_FALSE(answer["session"].get<std::string>().empty());
+  EXPECT_TRUE(ana.events.contains("agents"));
+}
+
+TEST_F(Bridge, HelloRefusesAnotherVersion) {
+  HelloRequest hello;
+  hello.version = "hmd.v0";
+  EXPECT_CODE(ana.ask(hello), "VERSION");
+  EXPECT_TRUE(lab.bridge->hub().closing(ana.connection));
+}
+
+TEST_F(Bridge, FromElsewhereATicketIsNeededAndOpensOnce) {
+  HelloRequest hello;
+  hello.version = kProtocol;
+  Client nobody(lab, {"10.0.0.7", false});
+  EXPECT_CODE(nobody.ask(hello), "BAD_TOKEN");
+  hello.ticket = lab.gate->issue({"bert", Role::kView}, lab.bus->now());
+  Client bert(lab, {"10.0.0.7", false});
+  const Json answer = bert.ask(hello);
+  EXPECT_CODE(answer, "OK");
+  EXPECT_EQ(answer["answer"]["name"], "bert");
+  Client again(lab, {"10.0.0.7", false});
+  EXPECT_CODE(again.ask(hello), "BAD_TOKEN");
+}
+
+TEST_F(Bridge, WhoOnlyLooksCannotChange) {
+  HelloRequest hello;
+  hello.version = kProtocol;
+  hello.ticket = lab.gate->issue({"bert", Role::kView}, lab.bus->now());
+  Client bert(lab, {"10.0.0.7", false});
+  EXPECT_CODE(bert.ask(hello), "OK");
+  EXPECT_CODE(bert.ask(AgentsRequest{}), "OK");
+  EXPECT_CODE(bert.ask(add(box(1, 1, 0.2, 1.5, 1.5, 0.5))), "DENIED");
+  hello.ticket = lab.gate->issue({"cleo", Role::kEdit}, lab.bus->now());
+  Client cleo(lab, {"10.0.0.7", false});
+  EXPECT_CODE(cleo.ask(hello), "OK");
+  EXPECT_CODE(cleo.ask(GoalRequest{"robot1", Frame::kMap, kHere}), "DENIED");
+}
+
+TEST_F(Bridge, WithoutHelloNothingGoes) {
+  lab.bridge->hub().text(ana.connection, request_text(1, AgentsRequest{}), lab.bus->now());
+  ana.read();
+  EXPECT_EQ(lab.bridge->hub().closing(ana.connection)->code, 1002);
+  Client idle(lab);
+  lab.run(6);
+  EXPECT_EQ(lab.bridge->hub().closing(idle.connection)->code, 1008) << "no hello within 5 s";
+}
+
+TEST_F(Bridge, ALostSessionGoesOnAndNothingIsDoneTwice) {
+  const Json first = ana.hello()["answer"];
+  place_robot();
+  EXPECT_CODE(ana.ask(ViewRequest{Layer::kMap, {}, Frame::kMap, {0, 0, 0}, {1000}, {}}), "OK");
+  lab.run(0.5);
+  ana.read();
+  const Json complete = ana.events["complete"];
+  const std::string edit = request_text(ana.next_id(), add(box(1, 1, 0.2, 1.5, 1.5, 0.5)));
+  const std::int64_t id = ana.last_id();
+  lab.bridge->hub().text(ana.connection, edit, lab.bus->now());
+  ana.lose();  // before the answer
+  lab.run(1);
+
+  Client back(lab);
+  HelloRequest hello;
+  hello.version = kProtocol;
+  hello.name = "ana";
+  hello.resume = Resume{first["session"], complete["epoch"], complete["revision"]};
+  const Json resumed = back.ask_text(id + 1, request_text(id + 1, hello));
+  ASSERT_TRUE(resumed["answer"]["resumed"].get<bool>()) << resumed;
+  EXPECT_CODE(back.ask_text(id, edit), "OK");
+  const Json history =
+      back.ask_text(id + 2, request_text(id + 2, HistoryRequest{{}, {}, OperationKind::kAdd, {}, 100}));
+  EXPECT_EQ(history["answer"]["operations"].size(), 1u) << history;
+  back.note(CreditNotice{1'000'000});
+  const Json view =
+      back.ask_text(id + 3, request_text(id + 3, ViewRequest{Layer::kMap, {}, Frame::kMap, {0, 0, 0}, {1000}, {}}));
+  EXPECT_CODE(view, "OK");
+  lab.run(0.3);
+  back.read();
+  ASSERT_EQ(back.frames.size(), 1u) << "just the block that changed";
+  EXPECT_FALSE(back.frames[0].head.whole);
+}
+
+TEST_F(Bridge, AStrangerCannotTakeUpASession) {
+  const Json first = ana.hello()["answer"];
+  HelloRequest hello;
+  hello.version = kProtocol;
+  hello.name = "eve";
+  hello.resume = Resume{first["session"], "", 0};
+  Client eve(lab);
+  EXPECT_FALSE(eve.ask(hello)["answer"]["resumed"].get<bool>());
+}
+
+TEST_F(Bridge, ClockTellsWhenItArrived) {
+  EXPECT_CODE(ana.hello(), "OK");
+  const Json answer = ana.ask(ClockRequest{12.5})["answer"];
+  EXPECT_EQ(answer["t0"], 12.5);
+  EXPECT_GE(answer["t2"], answer["t1"]);
+}
+
+TEST_F(Bridge, IdsCountUpAndMalformedRequestsReachTheirAsker) {
+  EXPECT_CODE(ana.hello(), "OK");
+  EXPECT_CODE(ana.ask_text(5, R"({"id":5,"request":"agents","body":{}})"), "OK");
+  EXPECT_CODE(ana.ask_text(3, R"({"id":3,"request":"agents","body":{}})"), "BAD_REQUEST");
+  EXPECT_CODE(ana.ask_text(6, R"({"id":6,"request":"agents","body":{"more":1}})"), "BAD_MESSAGE");
+  EXPECT_CODE(ana.ask_text(7, R"({"id":7,"request":"agents","body":{}})"), "OK");
+}
+
+TEST(BridgeAlone, SixtyFourRequestsMayWaitAndNoMore) {
+  Lab lab(Lab::kWithoutMerge);
+  Client ana(lab);
+  EXPECT_CODE(ana.hello(), "OK");
+  for (std::int64_t id = 10; id < 75; ++id) {
+    lab.bridge->hub().text(ana.connection, request_text(id, UndoRequest{"edit"}), lab.bus->now());
+  }
+  ana.read();
+  ASSERT_EQ(ana.answers.size(), 2u) << "hello, and the one too many";
+  EXPECT_CODE(ana.answers[74], "BUSY");
+}
+
+TEST_F(Bridge, RequestsBeyondTheRateAreRefusedAndAFloodIsCutOff) {
+  EXPECT_CODE(ana.hello(), "OK");
+  int rate = 0;
+  for (std::int64_t id = 10; id < 400; ++id)
+    lab.bridge->hub().text(ana.connection, request_text(id, AgentsRequest{}), lab.bus->now());
+  ana.read();
+  for (const auto& [id, answer] : ana.answers) rate += code_of_answer(answer) == "RATE" ? 1 : 0;
+  EXPECT_GT(rate, 50);
+  EXPECT_EQ(lab.bridge->hub().closing(ana.connection)->code, 1008);
+}
+
+TEST_F(Bridge, WhileTrackingIsLostTheOwnFrameIsRefused) {
+  become_agent(ana, "quest", true);
+  EXPECT_CODE(ana.ask(ViewRequest{Layer::kMap, {}, Frame::kOwn, {0, 0, 0}, {10}, {}}), "OK");
+  ana.note(TrackingNotice{Tracking::kLost, {}, {}, {}});
+  EXPECT_CODE(ana.ask(ViewRequest{Layer::kMap, {}, Frame::kOwn, {0, 0, 0}, {10}, {}}), "TRACKING_LOST");
+  ana.note(TrackingNotice{Tracking::kOk, "local1", kHere, {}});
+  EXPECT_CODE(ana.ask(ViewRequest{Layer::kMap, {}, Frame::kOwn, {0, 0, 0}, {10}, {}}), "OK");
+  ana.note(TrackingNotice{Tracking::kOk, "local2", kHere, {}});
+  EXPECT_CODE(ana.ask(ViewRequest{Layer::kMap, {}, Frame::kOwn, {0, 0, 0}, {10}, {}}), "UNALIGNED");
+}
+
+TEST_F(Bridge, OthersSeeWhereOneIs) {
+  become_agent(ana, "quest", true);
+  Client bert(lab);
+  EXPECT_CODE(bert.hello(), "OK");
+  ana.note(TrackingNotice{Tracking::kOk, "local1", Pose{{0, 2, 1}, {0, 0, 0, 1}}, std::array<double, 3>{0, 0, 0}});
+  lab.run(0.3);
+  bert.read();
+  const Json people = bert.events["people"]["people"];
+  ASSERT_EQ(people.size(), 1u);
+  EXPECT_EQ(people[0]["T_map_head"]["position"], Json({1.0, 2.0, 1.0}));
+  EXPECT_EQ(people[0]["p_map_pointer"], Json({1.0, 0.0, 0.0}));
+}
+
+TEST(BridgeAlone, WhatNobodyAnswersIsATimeout) {
+  Lab lab(Lab::kWithoutMerge);
+  Client ana(lab);
+  EXPECT_CODE(ana.hello(), "OK");
+  EXPECT_CODE(ana.ask(add(box(1, 1, 0.2, 1.5, 1.5, 0.5))), "TIMEOUT");
+}
+
+}  // namespace
+}  // namespace concord::hmd

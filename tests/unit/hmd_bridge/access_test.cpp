@@ -1,0 +1,143 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include <stdlib.h>
+
+#include "access/certificate.hpp"
+#include "access/gate.hpp"
+#include "access/token_store.hpp"
+#include "server/static_files.hpp"
+
+namespace concord::hmd {
+namespace {
+
+constexpr std::int64_t kNow = 1'700'000'000'000'000;
+
+class Folder {
+ public:
+  Folder() {
+    std::string pattern = "/tmp/concord-access-XXXXXX";
+    EXPECT_NE(mkdtemp(pattern.data()), nullptr);
+    path = pattern;
+  }
+  ~Folder() { std::filesystem::remove_all(path); }
+  std::filesystem::path path;
+};
+
+TEST(Gate, ATicketOpensOnceAndForTenSeconds) {
+  Gate gate(random_secret);
+  const auto ticket = gate.issue({"ana", Role::kEdit}, kNow);
+  ASSERT_TRUE(ticket);
+  EXPECT_FALSE(gate.redeem(*ticket + "x", kNow));
+  EXPECT_FALSE(gate.redeem("", kNow));
+  ASSERT_TRUE(gate.redeem(*ticket, kNow + 9'999'999));
+  EXPECT_FALSE(gate.redeem(*ticket, kNow + 9'999'999)) << "used";
+  const auto late = gate.issue({"ana", Role::kEdit}, kNow);
+  EXPECT_FALSE(gate.redeem(*late, kNow + 10'000'000));
+}
+
+TEST(Gate, TicketsAndAddressesAreBounded) {
+  Gate gate(random_secret);
+  for (std::size_t i = 0; i < Gate::kMaxTickets; ++i) ASSERT_TRUE(gate.issue({"ana", Role::kEdit}, kNow));
+  EXPECT_FALSE(gate.issue({"ana", Role::kEdit}, kNow));
+  EXPECT_TRUE(gate.issue({"ana", Role::kEdit}, kNow + 10'000'000)) << "old ones go";
+  for (std::size_t i = 0; i < Gate::kMaxAddresses; ++i) ASSERT_TRUE(gate.may_try("10.0.0." + std::to_string(i), kNow));
+  EXPECT_FALSE(gate.may_try("11.0.0.1", kNow));
+  EXPECT_TRUE(gate.may_try("11.0.0.1", kNow + 60'000'000));
+}
+
+TEST(Gate, AnAddressThatTriesTooOftenWaits) {
+  Gate gate(random_secret);
+  int tries = 0;
+  while (gate.may_try("10.0.0.1", kNow)) ++tries;
+  EXPECT_EQ(tries, 30);
+  EXPECT_TRUE(gate.may_try("10.0.0.2", kNow));
+  EXPECT_TRUE(gate.may_try("10.0.0.1", kNow + 1'000'000));
+}
+
+TEST(Origin, TheServerItselfAndThoseListed) {
+  EXPECT_TRUE(origin_allowed("", "https", "lab:8443", {}));
+  EXPECT_TRUE(origin_allowed("https://LAB:8443", "https", "lab:8443", {}));
+  EXPECT_FALSE(origin_allowed("http://lab:8443", "https", "lab:8443", {}));
+  EXPECT_FALSE(origin_allowed("https://lab:8443.evil.example", "https", "lab:8443", {}));
+  EXPECT_FALSE(origin_allowed("null", "https", "lab:8443", {}));
+  EXPECT_TRUE(origin_allowed("https://other.example", "https", "lab:8443", {"https://other.example"}));
+}
+
+TEST(Origin, OnlyThisMachinesOwnNamesAreLocal) {
+  for (const char* host : {"localhost", "localhost:8443", "127.0.0.1:1", "[::1]:8443", "LOCALHOST"})
+    EXPECT_TRUE(is_local_host(host)) << host;
+  for (const char* host :
+       {"", "evil.example", "localhost.evil.example", "127.evil.example", "127.0.0.1.evil.example:80", "[::2]"}) {
+    EXPECT_FALSE(is_local_host(host)) << host;
+  }
+  EXPECT_TRUE(is_loopback("127.0.0.1") && is_loopback("::1") && is_loopback("::ffff:127.0.0.1"));
+  EXPECT_FALSE(is_loopback("10.0.0.1") || is_loopback("::ffff:10.0.0.1") || is_loopback(""));
+}
+
+TEST(TokenStore, TokensAreFoundByThemselvesOnlyAndNeverWritten) {
+  const Folder folder;
+  TokenStore store(folder.path / "bridge" / "tokens.db");
+  const auto token = store.add("ana", Role::kRobot, kNow);
+  ASSERT_TRUE(token) << token.error().message;
+  const auto found = store.find(*token);
+  ASSERT_TRUE(found && *found);
+  EXPECT_EQ((*found)->name, "ana");
+  EXPECT_EQ((*found)->role, Role::kRobot);
+  EXPECT_FALSE(*store.find(*token + "x"));
+  EXPECT_FALSE(*store.find("' OR 1=1 --"));
+  EXPECT_EQ(store.add("ana", Role::kView, kNow).error().code, concord::Code::kExists);
+  EXPECT_EQ(store.add("a/b", Role::kView, kNow).error().code, concord::Code::kBadName);
+  ASSERT_EQ(store.list()->size(), 1u);
+  for (const auto& file : std::filesystem::directory_iterator(folder.path / "bridge")) {
+    std::ifstream in(file.path(), std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(in)), {});
+    EXPECT_EQ(bytes.find(*token), std::string::npos) << file.path();
+  }
+  EXPECT_TRUE(store.remove("ana"));
+  EXPECT_EQ(store.remove("ana").error().code, concord::Code::kNotFound);
+  EXPECT_FALSE(*store.find(*token));
+}
+
+TEST(Secret, EachIsAnotherAndLong) {
+  const std::string a = random_secret(), b = random_secret();
+  EXPECT_EQ(a.size(), 43u);
+  EXPECT_NE(a, b);
+}
+
+TEST(MadeCertificate, NamesAreCheckedBeforeTheyReachOpenSsl) {
+  const auto made = make_certificate({"lab.example", "10.0.0.7", "::1"}, kNow / 1'000'000);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_TRUE(made->certificate.starts_with("-----BEGIN CERTIFICATE-----"));
+  EXPECT_EQ(made->fingerprint.size(), 95u);
+  EXPECT_FALSE(make_certificate({}, 0));
+  EXPECT_FALSE(make_certificate({"lab,DNS:evil"}, 0));
+  EXPECT_FALSE(make_certificate({"lab\nevil"}, 0));
+}
+
+TEST(StaticFiles, OnlyWhatWasThereAtTheStartIsServed) {
+  const Folder folder;
+  std::filesystem::create_directories(folder.path / "web" / "sub" / ".git");
+  std::ofstream(folder.path / "secret.txt") << "secret";
+  std::ofstream(folder.path / "web" / "index.html") << "page";
+  std::ofstream(folder.path / "web" / "sub" / "a.js") << "script";
+  std::ofstream(folder.path / "web" / "sub" / ".hidden") << "hidden";
+  std::ofstream(folder.path / "web" / "sub" / ".git" / "config") << "hidden";
+  StaticFiles files;
+  ASSERT_TRUE(files.add(folder.path / "web", "/"));
+  EXPECT_EQ(files.size(), 2u);
+  ASSERT_NE(files.find("/"), nullptr);
+  EXPECT_EQ(*files.find("/?a=b")->body, "page");
+  EXPECT_EQ(files.find("/sub/a.js")->type, "text/javascript; charset=utf-8");
+  for (const char* target : {"/../secret.txt", "/sub/../../secret.txt", "/%2e%2e/secret.txt", "//index.html", "/sub",
+                             "/sub/", "", "index.html", "/sub/.hidden", "/sub/.git/config", "/sub/a.js/", "/sub\\a.js",
+                             "/sub/a.js%00", "http://x/index.html"}) {
+    EXPECT_EQ(files.find(target), nullptr) << target;
+  }
+  EXPECT_FALSE(files.add(folder.path / "none", "/"));
+}
+
+}  // namespace
+}  // namespace concord::hmd

@@ -1,0 +1,100 @@
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <set>
+
+#include "mapper/room_mapper.hpp"
+#include "mapper/triangle_cells.hpp"
+
+namespace concord::hmd {
+namespace {
+
+MeshLook look_at(std::vector<MeshPart> parts, const Eigen::Vector3d& sensor = {0.025, 0.025, 1.5}) {
+  MeshLook look;
+  look.T_own_sensor.translation() = sensor;
+  look.parts = std::move(parts);
+  return look;
+}
+MeshPart quad(std::uint32_t number, float half, float z) {
+  return {number, {{-half, -half, z}, {half, -half, z}, {half, half, z}, {-half, half, z}}, {{0, 1, 2}, {0, 2, 3}}};
+}
+
+RC_GTEST_PROP(TriangleCells, AreThoseThatMeetTheTriangleAndNoOthers, ()) {
+  const auto corner = [] {
+    const auto c = [] { return *rc::gen::inRange(-400, 400) / 100.0 + 0.003; };
+    return Eigen::Vector3d(c(), c(), c());
+  };
+  const TriangleCells::Corners corners{corner(), corner(), corner()};
+  std::vector<VoxelIndex> cells;
+  RC_ASSERT(TriangleCells::append(corners, 100'000, cells));
+  std::set<VoxelIndex> found(cells.begin(), cells.end());
+  TriangleCells::Corners nudged = corners;
+  for (auto& c : nudged) c.array() += 1e-6;
+  for (int x = -5; x <= 5; ++x) {
+    for (int y = -5; y <= 5; ++y) {
+      for (int z = -5; z <= 5; ++z) RC_ASSERT(found.contains({x, y, z}) == meets(nudged, {x, y, z}));
+    }
+  }
+}
+
+TEST(RoomMapper, AVoxelExistsAfterTwoLooksAndGoesWhenItsMeshIsGone) {
+  RoomMapper mapper(0.05);
+  ASSERT_TRUE(mapper.take(look_at({quad(1, 0.5F, 0.01F)}), 0));
+  EXPECT_EQ(mapper.occupied(), 0) << "55 %";
+  ASSERT_TRUE(mapper.take(look_at({}), 1));
+  const std::int64_t there = mapper.occupied();
+  EXPECT_GE(there, 20 * 20) << "60 %";
+  ASSERT_TRUE(mapper.take(look_at({}), 2));
+  ASSERT_TRUE(mapper.take(look_at({{1, {}, {}}}), 3));
+  EXPECT_EQ(mapper.occupied(), there) << "65 - 1 %";
+  std::int64_t looks = 0;
+  while (mapper.occupied() > 0) ASSERT_TRUE(mapper.take(look_at({}), 4 + looks++));
+  EXPECT_EQ(looks, 5) << "64 to 59 %";
+}
+
+TEST(RoomMapper, ProbabilityEndsAtAHundredPercent) {
+  RoomMapper mapper(0.05);
+  for (int i = 0; i < 30; ++i) ASSERT_TRUE(mapper.take(look_at({quad(1, 0.2F, 0.01F)}), i));
+  ASSERT_TRUE(mapper.take(look_at({{1, {}, {}}}), 30));
+  std::int64_t looks = 1;
+  for (; mapper.occupied() > 0; ++looks) ASSERT_TRUE(mapper.take(look_at({}), 30 + looks));
+  EXPECT_EQ(looks, 41) << "100 to 59 %";
+}
+
+TEST(RoomMapper, RaysFreeWhatIsBeforeTheHitAndNeverTheHitNorWhatIsBehind) {
+  RoomMapper mapper(0.05);
+  // A table over a floor: below the table nothing is seen.
+  const auto parts = std::vector<MeshPart>{quad(1, 0.5F, 0.01F), quad(2, 2.0F, -1.01F)};
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(mapper.take(look_at(parts), i));
+  const BrickMap& map = mapper.map();
+  const auto at = [&](double x, double y, double z) { return map.at(voxel_of({x, y, z}, 0.05)); };
+  for (double z = 0.08; z < 1.5; z += 0.05)
+    EXPECT_EQ(at(0.03, 0.03, z), kFree) << "straight down, along an axis: " << z;
+  EXPECT_TRUE(is_occupied(at(0.03, 0.03, 0.01)));
+  EXPECT_EQ(at(0.03, 0.03, -0.5), kUnknown);
+  EXPECT_TRUE(is_occupied(at(1.8, 0.03, -1.01)));
+  EXPECT_EQ(at(1.8, 0.03, -0.9), kFree);
+}
+
+TEST(RoomMapper, WhatIsBeyondReachIsNotJudged) {
+  RoomMapper mapper(0.05);
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(mapper.take(look_at({quad(1, 0.2F, 0.01F)}), i));
+  const std::int64_t there = mapper.occupied();
+  ASSERT_TRUE(mapper.take(look_at({{1, {}, {}}}, {30, 0, 1.5}), 3));
+  for (int i = 0; i < 50; ++i) ASSERT_TRUE(mapper.take(look_at({}, {30, 0, 1.5}), 4 + i));
+  EXPECT_EQ(mapper.occupied(), there);
+}
+
+TEST(RoomMapper, WhatIsRefusedChangesNothing) {
+  RoomMapper mapper(0.05);
+  ASSERT_TRUE(mapper.take(look_at({quad(1, 0.5F, 0.01F)}), 5));
+  EXPECT_EQ(mapper.take(look_at({}), 5).error().code, Code::kStale);
+  EXPECT_EQ(mapper.take(look_at({quad(2, 900.0F, 0)}), 6).error().code, Code::kTooLarge);
+  RoomMapper fine(0.005);
+  EXPECT_EQ(fine.take(look_at({quad(2, 900.0F, 0)}), 6).error().code, Code::kOutOfBounds);
+  ASSERT_TRUE(mapper.take(look_at({}), 6)) << "the sequence did not go on";
+  EXPECT_GE(mapper.occupied(), 400);
+}
+
+}  // namespace
+}  // namespace concord::hmd

@@ -1,0 +1,94 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { checkStruct } from "../../../hmd_bridge/web/generated/messages";
+import { composed, distance, fromXr, fromYaw, inverse, kIdentity, levelled, poseFromXr, rotated, toXr, transformed, unit, yawOf, type Vec3 } from "../../../hmd_bridge/web/src/base/vec";
+import { outline } from "../../../hmd_bridge/web/src/edit/outline";
+import { begun, boundsOf, ended, flattened, shapeOf, shifted, volumeOf, withoutLast, withPoint, type Selection, type Tool } from "../../../hmd_bridge/web/src/edit/selection";
+import { clearanceColour, ribbon } from "../../../hmd_bridge/web/src/scene/ribbon";
+import { random } from "../support/random";
+
+const select = (tool: Tool, points: Vec3[], height: number | null = 2): Selection => points.reduce(withPoint, begun(tool, 0.05, height));
+const near = (a: Vec3, b: Vec3): void => assert(distance(a, b) < 1e-9, `${a} is not ${b}`);
+
+test("a box is closed by its second corner and stands on the lower one", () => {
+  const box = select("box", [[3, 1, 0.1], [1, 2, 0.3], [9, 9, 9]]);
+  assert(box.closed);
+  assert.deepEqual(shapeOf(box), { kind: "box", min: [1, 1, 0.1], max: [3, 2, 2.1] });
+  assert.deepEqual(volumeOf({ ...box, height: null }), { kind: "box", min: [1, 1, 0.1], max: [3, 2, 0.3] });
+  assert.equal(shapeOf(select("box", [[3, 1, 0], [3, 2, 0]])), null, "without width");
+  assert.equal(shapeOf(select("box", [[3, 1, 0], [1, 2, 0]], null)), null, "without height");
+});
+
+test("lines, areas and prisms end when they have points enough", () => {
+  const line = select("line", [[0, 0, 0]]);
+  assert(!ended(line).closed && shapeOf(line) === null);
+  const two = withPoint(line, [1, 0, 0]);
+  assert(ended(two).closed && !two.closed);
+  assert.deepEqual(withPoint(two, [1, 0, 0]), two, "a double click adds nothing");
+  assert.deepEqual(withPoint(ended(two), [5, 5, 5]), ended(two), "nothing comes after the end");
+  assert.deepEqual(withoutLast(ended(two)), line);
+  assert.equal(shapeOf(select("area", [[0, 0, 0], [1, 0, 0]])), null);
+  assert.deepEqual(shapeOf(select("prism", [[0, 0, 0.5], [1, 0, 0], [0, 1, 0]])), { kind: "prism", points: [[0, 0], [1, 0], [0, 1]], low: 0, high: 2 });
+});
+
+test("every shape that a tool makes is one that the schema knows, with edges and bounds", () => {
+  const next = random(1);
+  for (const tool of ["line", "area", "box", "prism"] as const) {
+    for (let run = 0; run < 50; ++run) {
+      const points = Array.from({ length: 2 + Math.floor(next() * 6) }, (): Vec3 => [next() * 10, next() * 10, next() * 2]);
+      const shape = shapeOf(select(tool, points));
+      if (!shape) continue;
+      assert.equal(checkStruct("Shape", shape), null);
+      const bounds = boundsOf(shape, 0.2);
+      assert(bounds?.kind === "box");
+      for (const [a, b] of outline(shape, 0.05)) {
+        for (const p of [a, b]) assert(p.every((c, i) => c > bounds.min[i]! && c < bounds.max[i]!));
+      }
+      const there = shifted(shape, [1, 2, 3]);
+      outline(there, 0.05).forEach(([a], i) => near(a, [outline(shape, 0.05)[i]![0][0] + 1, outline(shape, 0.05)[i]![0][1] + 2, outline(shape, 0.05)[i]![0][2] + 3]));
+    }
+  }
+});
+
+test("an area's corners come to lie in one plane, each moved as little as can be", () => {
+  const pane: Vec3[] = [[0, 0, 0], [2, 0.02, 0], [2, -0.02, 2], [0, 0.02, 2]];
+  const flat = flattened(pane);
+  const [a, b, c, d] = flat as [Vec3, Vec3, Vec3, Vec3];
+  const u = b.map((x, i) => x - a[i]!) as Vec3;
+  const v = c.map((x, i) => x - a[i]!) as Vec3;
+  const w = d.map((x, i) => x - a[i]!) as Vec3;
+  const volume = u[0] * (v[1] * w[2] - v[2] * w[1]) - u[1] * (v[0] * w[2] - v[2] * w[0]) + u[2] * (v[0] * w[1] - v[1] * w[0]);
+  assert(Math.abs(volume) < 1e-9);
+  flat.forEach((p, i) => assert(distance(p, pane[i]!) < 0.04));
+});
+
+test("a turned box has twelve edges of its sizes", () => {
+  const edges = outline({ kind: "oriented_box", T_frame_box: { position: [1, 2, 3], rotation: fromYaw(0.7) }, size: [1, 2, 3] }, 0.05);
+  const lengths = edges.map(([a, b]) => Math.round(distance(a, b) * 1e6) / 1e6).sort();
+  assert.deepEqual(lengths, [1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3]);
+  assert.equal(outline({ kind: "voxels", resolution: 0.1, boxes: [[0, 0, 0, 1, 1, 1]] }, 0.1).length, 12);
+});
+
+test("transforms go there and back, and levelling keeps the heading", () => {
+  const next = random(2);
+  for (let run = 0; run < 100; ++run) {
+    const T = { position: [next(), next(), next()] as Vec3, rotation: unit([next() - 0.5, next() - 0.5, next() - 0.5, next() - 0.5]) };
+    const p: Vec3 = [next(), next(), next()];
+    near(transformed(inverse(T), transformed(T, p)), p);
+    near(transformed(composed(T, inverse(T)), p), transformed(kIdentity, p));
+    near(toXr(fromXr(p)), p);
+    const xr = { position: p, rotation: T.rotation };
+    near(transformed(poseFromXr(xr), fromXr([1, 2, 3])), fromXr(transformed(xr, [1, 2, 3])));
+    const yaw = (next() - 0.5) * 6;
+    assert(Math.abs(yawOf(levelled({ position: p, rotation: fromYaw(yaw) }).rotation) - yaw) < 1e-9);
+  }
+  near(rotated(fromYaw(Math.PI / 2), [1, 0, 0]), [0, 1, 0]);
+});
+
+test("a ribbon is as wide as asked, and red where it is tight", () => {
+  const band = ribbon([{ p: [0, 0, 0], clearance: 0.1 }, { p: [1, 0, 0], clearance: 2 }], 0.4, 0.05);
+  assert.deepEqual([...band.positions].map((x) => Math.round(x * 100) / 100), [0, 0.2, 0.05, 0, -0.2, 0.05, 1, 0.2, 0.05, 1, -0.2, 0.05]);
+  assert.equal(band.indices.length, 6);
+  assert(clearanceColour(0)[0] > clearanceColour(0)[1] && clearanceColour(2)[1] > clearanceColour(2)[0]);
+  assert.equal(ribbon([{ p: [0, 0, 0], clearance: 1 }], 0.4, 0).indices.length, 0);
+});

@@ -1,0 +1,176 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import type { HelloAnswer } from "../../../hmd_bridge/web/generated/messages";
+import { Link, type Socket } from "../../../hmd_bridge/web/src/link/link";
+import { RefusedError, wordsFor } from "../../../hmd_bridge/web/src/link/failures";
+import { ServerClock } from "../../../hmd_bridge/web/src/link/clock";
+
+interface Said { id?: number; request?: string; notice?: string; body: Record<string, unknown> }
+
+class FakeSocket implements Socket {
+  binaryType = "";
+  readyState = 1;
+  onopen: (() => void) | null = null;
+  onclose: (() => void) | null = null;
+  onmessage: ((event: { data: string | ArrayBuffer }) => void) | null = null;
+  readonly sent: Said[] = [];
+  closedWith: number | undefined;
+  send(data: string | Uint8Array): void {
+    if (typeof data === "string") this.sent.push(JSON.parse(data) as Said);
+  }
+  close(code?: number): void {
+    this.closedWith = code ?? 1005;
+    this.onclose?.();
+  }
+  hear(message: unknown): void {
+    this.onmessage?.({ data: typeof message === "string" ? message : JSON.stringify(message) });
+  }
+  asked(name: string): Said[] {
+    return this.sent.filter(({ request }) => request === name);
+  }
+}
+
+const hello: HelloAnswer = {
+  session: "s", person: 1, role: "edit", name: "Ana", resumed: false, resolution: 0.05, epoch: "e1", utime: 1,
+  limits: { text_bytes: 1, binary_bytes: 1, requests_per_second: 1, upload_bytes_per_second: 1, burst_requests: 1, burst_upload_bytes: 1, idle_seconds: 1 },
+};
+const turn = (): Promise<void> => new Promise((resolve) => setImmediate(resolve));
+
+class Bench {
+  readonly sockets: FakeSocket[] = [];
+  readonly timers: { milliseconds: number; what: () => void }[] = [];
+  now = 1000;
+  readonly ready: boolean[] = [];
+  readonly link = new Link({
+    open: () => {
+      const socket = new FakeSocket();
+      this.sockets.push(socket);
+      return socket;
+    },
+    ticket: () => Promise.resolve(undefined),
+    who: () => ({ name: "Ana", device: "test" }),
+    now: () => this.now,
+    later: (milliseconds, what) => void this.timers.push({ milliseconds, what }),
+  });
+  get socket(): FakeSocket {
+    return this.sockets.at(-1)!;
+  }
+  async enter(answer: Partial<HelloAnswer> = {}): Promise<void> {
+    this.link.onReady = (_, keep) => void this.ready.push(keep);
+    await turn();
+    this.socket.onopen!();
+    this.socket.hear({ id: this.socket.asked("hello").at(-1)!.id, answer: { ...hello, ...answer } });
+    await turn();
+    await turn();
+  }
+  /** Lets the last timer of this length pass. */
+  pass(milliseconds: number): void {
+    this.timers.findLast((timer) => timer.milliseconds === milliseconds)!.what();
+  }
+}
+
+test("hello comes first, then credit; answers find their requests in any order", async () => {
+  const bench = new Bench();
+  bench.link.connect();
+  await bench.enter();
+  assert.equal(bench.link.state.value.state, "ready");
+  assert.deepEqual(bench.socket.sent.slice(0, 2).map(({ request, notice }) => request ?? notice), ["hello", "credit"]);
+  const undo = bench.link.request("undo", { edit: "a" });
+  const redo = bench.link.request("redo", { edit: "b" });
+  bench.socket.hear({ id: bench.socket.asked("redo")[0]!.id, error: { code: "CONFLICT", message: "by Bo", retry: false } });
+  bench.socket.hear({ id: bench.socket.asked("undo")[0]!.id, answer: { revision: 3, voxels: 8 } });
+  assert.deepEqual(await undo, { revision: 3, voxels: 8 });
+  await assert.rejects(redo, (error: unknown) => error instanceof RefusedError && error.refusal.code === "CONFLICT" && error.message.includes(wordsFor("CONFLICT")));
+});
+
+test("a lost connection is taken up: the answer that was lost is asked for again under its old id", async () => {
+  const bench = new Bench();
+  bench.link.connect();
+  await bench.enter();
+  bench.socket.hear({ event: "complete", body: { stream: 0, epoch: "e1", revision: 57, map_revision: 4, synced: true } });
+  const undo = bench.link.request("undo", { edit: "a" });
+  await turn();
+  const id = bench.socket.asked("undo")[0]!.id;
+  bench.socket.close();
+  await turn();
+  assert.equal(bench.link.state.value.state, "lost");
+  await assert.rejects(bench.link.request("maps", {}), /no connection/);
+  bench.pass(500);
+  await bench.enter({ resumed: true });
+  assert.deepEqual(bench.socket.asked("hello")[0]!.body["resume"], { session: "s", epoch: "e1", revision: 57 });
+  assert.deepEqual(bench.ready, [false, true]);
+  assert.equal(bench.socket.asked("undo")[0]!.id, id);
+  bench.socket.hear({ id, answer: { revision: 3, voxels: 8 } });
+  assert.equal((await undo).revision, 3);
+});
+
+test("a session that is gone says so to who waits, and keeps no blocks", async () => {
+  const bench = new Bench();
+  bench.link.connect();
+  await bench.enter();
+  const undo = bench.link.request("undo", { edit: "a" });
+  bench.socket.close();
+  await turn();
+  bench.pass(500);
+  const rejected = assert.rejects(undo, /History/);
+  await bench.enter({ session: "t", epoch: "e2" });
+  await rejected;
+  assert.deepEqual(bench.ready, [false, false]);
+  assert.equal(bench.socket.asked("undo").length, 0);
+});
+
+test("a refused hello ends it with clear words; one that may be granted later is tried again", async () => {
+  for (const [code, retry, state] of [["BAD_TOKEN", false, "refused"], ["BUSY", true, "lost"]] as const) {
+    const bench = new Bench();
+    bench.link.connect();
+    await turn();
+    bench.socket.onopen!();
+    bench.socket.hear({ id: 1, error: { code, message: "so it is", retry } });
+    await turn();
+    await turn();
+    const now = bench.link.state.value;
+    assert.equal(now.state, state);
+    assert("why" in now && now.why.includes(wordsFor(code)) && now.why.includes("so it is"));
+  }
+});
+
+test("credit is said again as frames are taken in, and a server that talks nonsense is left", async () => {
+  const bench = new Bench();
+  bench.link.connect();
+  await bench.enter();
+  const frame = new Uint8Array(24 + 12 * 100_000);
+  const view = new DataView(frame.buffer);
+  view.setUint8(0, 2);
+  view.setUint32(8, 100_000, true);
+  view.setUint32(12, 12 * 100_000, true);
+  for (let i = 0; i < 2; ++i) bench.socket.onmessage!({ data: frame.buffer });
+  await turn();
+  await turn();
+  const credits = bench.socket.sent.filter(({ notice }) => notice === "credit").map(({ body }) => body["bytes"]);
+  assert.deepEqual(credits, [4_000_000, 4_000_000 + 2 * frame.length]);
+  bench.socket.hear("nonsense");
+  await turn();
+  assert.equal(bench.socket.closedWith, 1002);
+  await turn();
+  assert.equal(bench.link.state.value.state, "lost");
+});
+
+test("a network that went silent is noticed", async () => {
+  const bench = new Bench();
+  bench.link.connect();
+  await bench.enter();
+  bench.now += 30_000;
+  bench.pass(10_000);
+  await turn();
+  assert.equal(bench.link.state.value.state, "lost");
+});
+
+test("the server's clock is told within half of the shortest way", () => {
+  const clock = new ServerClock();
+  clock.hear(1000, 7_000_000, 7_000_000, 1100); // 100 ms there and back
+  assert.equal(clock.utime(1050), 7_000_000);
+  clock.hear(2000, 8_050_000, 8_051_000, 2003); // 2 ms
+  assert(Math.abs(clock.utime(2001.5) - 8_050_500) < 1);
+  clock.hear(3000, 9_000_000, 9_000_000, 3900); // a slow one tells nothing
+  assert(Math.abs(clock.utime(2001.5) - 8_050_500) < 1);
+});
