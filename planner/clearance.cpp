@@ -58,12 +58,11 @@ double distance(const Segment& s, const Square& q) {
 
 /// What a distance is taken to.
 struct Blocked {
-  const Grid& grid;
-  const ZoneLayer& zones;
+  const Terrain& terrain;
   Against against;
 
   [[nodiscard]] std::uint64_t plane(BrickIndex column) const {
-    const Ground there = ground(grid, zones, column);
+    const Ground there = terrain.at(column);
     return ~(against == Against::kImpassable ? there.passable : there.touchable);
   }
 };
@@ -106,7 +105,7 @@ double nearest_along(const Blocked& blocked, const Segment& s, double least) {
 /// The distance to the nearest blocked cell if it is less than `reach`. Both in cells: a length that went to metres and
 /// back is another number than before.
 std::optional<double> nearest(const Blocked& blocked, std::span<const Eigen::Vector2d> points, double reach) {
-  const double resolution = blocked.grid.resolution();
+  const double resolution = blocked.terrain.resolution();
   double least = reach;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector2d& next = points[std::min(i + 1, points.size() - 1)];
@@ -117,18 +116,18 @@ std::optional<double> nearest(const Blocked& blocked, std::span<const Eigen::Vec
 
 }  // namespace
 
-std::optional<double> clearance(const Grid& grid, std::span<const Eigen::Vector2d> points, double reach,
-                                const ZoneLayer& zones, Against against) {
-  const std::optional<double> cells = nearest({grid, zones, against}, points, reach / grid.resolution());
-  return cells ? std::optional(*cells * grid.resolution()) : std::nullopt;
+std::optional<double> clearance(const Terrain& terrain, std::span<const Eigen::Vector2d> points, double reach,
+                                Against against) {
+  const std::optional<double> cells = nearest({terrain, against}, points, reach / terrain.resolution());
+  return cells ? std::optional(*cells * terrain.resolution()) : std::nullopt;
 }
 
-bool is_clear(const Grid& grid, std::span<const Eigen::Vector2d> points, double radius, const ZoneLayer& zones) {
+bool is_clear(const Terrain& terrain, std::span<const Eigen::Vector2d> points, double radius) {
   constexpr double kLine = 5e-7;
   // Two millionths of a cell are left for rounding: the search allows one (kTouch).
-  const double disc = std::max(radius / grid.resolution() - 2e-6, kLine);
-  if (nearest({grid, zones, Against::kUntouchable}, points, disc)) return false;
-  return !zones.has_contact() || !nearest({grid, zones, Against::kImpassable}, points, kLine);
+  const double disc = std::max(radius / terrain.resolution() - 2e-6, kLine);
+  if (nearest({terrain, Against::kUntouchable}, points, disc)) return false;
+  return !terrain.has_contact() || !nearest({terrain, Against::kImpassable}, points, kLine);
 }
 
 }  // namespace concord

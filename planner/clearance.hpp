@@ -5,8 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "planner/grid.hpp"
-#include "planner/zone_layer.hpp"
+#include "planner/terrain.hpp"
 
 namespace concord {
 
@@ -18,13 +17,11 @@ enum class Against {
 
 /// The least distance of a polyline (map frame, metres) to such cells; 0 if it enters or touches one. Nothing where
 /// none is nearer than `reach`.
-[[nodiscard]] std::optional<double> clearance(const Grid& grid, std::span<const Eigen::Vector2d> points, double reach,
-                                              const ZoneLayer& zones = no_zones(),
-                                              Against against = Against::kImpassable);
+[[nodiscard]] std::optional<double> clearance(const Terrain& terrain, std::span<const Eigen::Vector2d> points,
+                                              double reach, Against against = Against::kImpassable);
 
 /// Whether a robot of `radius` metres may follow the polyline: its disc overlaps no untouchable cell anywhere on the
 /// way, and the line itself touches no impassable one.
-[[nodiscard]] bool is_clear(const Grid& grid, std::span<const Eigen::Vector2d> points, double radius,
-                            const ZoneLayer& zones = no_zones());
+[[nodiscard]] bool is_clear(const Terrain& terrain, std::span<const Eigen::Vector2d> points, double radius);
 
 }  // namespace concord

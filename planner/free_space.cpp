@@ -38,8 +38,14 @@ double rightmost_in(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double r
 
 }  // namespace
 
-FreeSpace::FreeSpace(const Grid& grid, double radius, const ZoneLayer& zones, NoGo no_go)
-    : grid_(grid), zones_(zones), no_go_(no_go), radius_(std::max(radius - kTouch, kTouch)) {
+Cell cell_of(const Eigen::Vector2d& p) {
+  return {static_cast<std::int32_t>(std::floor(p.x())), static_cast<std::int32_t>(std::floor(p.y()))};
+}
+
+Eigen::Vector2d centre_of(Cell cell) { return {cell.x + 0.5, cell.y + 0.5}; }
+
+FreeSpace::FreeSpace(const Terrain& terrain, double radius)
+    : terrain_(terrain), radius_(std::max(radius - kTouch, kTouch)) {
   assert(std::isfinite(radius) && radius >= 0);
   // From a cell's centre to a cell d columns away there are d - 1/2 cells, to its own column none. In half cells:
   const auto gap = [](std::int64_t d) { return d == 0 ? std::int64_t{0} : (2 * d - 1) * (2 * d - 1); };
@@ -52,11 +58,31 @@ FreeSpace::FreeSpace(const Grid& grid, double radius, const ZoneLayer& zones, No
   reach_ = static_cast<int>(widths_.size()) - 1;
 }
 
-Ground FreeSpace::ground_at(BrickIndex column) {
-  const Ground there = ground(grid_, zones_, column);
-  met_no_go_ |= there.passable != there.free;
-  if (no_go_ == NoGo::kHeeded) return there;
-  return {there.free, there.free, there.free | zones_.contact(column)};
+/// The rows of a column of bricks.
+void FreeSpace::put(Rows& rows, BrickIndex column, std::uint64_t plane) {
+  const int x = (column.x & 7) * 8;
+  const int y = (column.y & 7) * 8;
+  for (int i = 0; i < 8; ++i) {
+    std::uint64_t& row = rows[static_cast<std::size_t>(y + i)];
+    row = (row & ~(std::uint64_t{0xFF} << x)) | (plane >> (8 * i) & 0xFF) << x;
+  }
+}
+
+void FreeSpace::follow(BrickIndex column) {
+  const Ground now = terrain_.at(column);
+  for (Layer* layer : {&touchable_, &passable_}) {
+    const auto it = layer->tiles.find({column.x >> 3, column.y >> 3});
+    if (it != layer->tiles.end()) put(*it->second, column, now.*layer->plane);
+  }
+  const auto forget = [&](Tiles& tiles, int margin) {
+    const Cell low = tile_of({column.x * 8 - margin, column.y * 8 - margin});
+    const Cell high = tile_of({column.x * 8 + 7 + margin, column.y * 8 + 7 + margin});
+    for (std::int32_t y = low.y; y <= high.y; ++y) {
+      for (std::int32_t x = low.x; x <= high.x; ++x) tiles.erase({x, y});
+    }
+  };
+  forget(edges_, 1);
+  forget(open_, reach_ + 1);
 }
 
 const FreeSpace::Rows& FreeSpace::rows(Layer& layer, Cell tile) {
@@ -67,8 +93,8 @@ const FreeSpace::Rows& FreeSpace::rows(Layer& layer, Cell tile) {
     rows->fill(0);
     for (int by = 0; by < 8; ++by) {
       for (int bx = 0; bx < 8; ++bx) {
-        const std::uint64_t plane = ground_at({tile.x * 8 + bx, tile.y * 8 + by, 0}).*layer.plane;
-        for (int y = 0; y < 8; ++y) (*rows)[by * 8 + y] |= (plane >> (8 * y) & 0xFF) << (8 * bx);
+        const BrickIndex column{tile.x * 8 + bx, tile.y * 8 + by, 0};
+        put(*rows, column, terrain_.at(column).*layer.plane);
       }
     }
     it->second = std::move(rows);
@@ -121,7 +147,7 @@ void FreeSpace::carve(Rows& open, const Rows& edges, int dx, int dy) const {
 const FreeSpace::Rows& FreeSpace::open_rows(Cell tile) {
   auto [it, is_new] = open_.try_emplace(tile);
   if (!is_new) return *it->second;
-  auto open = std::make_unique<Rows>(rows(zones_.has_contact() ? passable_ : touchable_, tile));
+  auto open = std::make_unique<Rows>(rows(terrain_.has_contact() ? passable_ : touchable_, tile));
   if (std::any_of(open->begin(), open->end(), [](std::uint64_t row) { return row != 0; })) {
     const int tiles = (reach_ + kSide - 1) / kSide;
     for (int dy = -tiles; dy <= tiles; ++dy) {
@@ -143,7 +169,7 @@ bool FreeSpace::has_row(Layer& layer, std::int32_t y, std::int32_t first, std::i
 }
 
 bool FreeSpace::sees(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
-  return covers(touchable_, from, to, radius_) && (!zones_.has_contact() || covers(passable_, from, to, kTouch));
+  return covers(touchable_, from, to, radius_) && (!terrain_.has_contact() || covers(passable_, from, to, kTouch));
 }
 
 /// Whether all cells that a disc touches on its way are in the layer.

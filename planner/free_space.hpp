@@ -8,28 +8,32 @@
 
 #include <Eigen/Core>
 
-#include "planner/grid.hpp"
-#include "planner/zone_layer.hpp"
+#include "planner/terrain.hpp"
 
 namespace concord {
 
 /// Two discs closer than this touch: a millionth of a cell, far above the rounding of positions.
 inline constexpr double kTouch = 1e-6;
 
+/// Between exact points and cells; positions in cells.
+[[nodiscard]] Cell cell_of(const Eigen::Vector2d& p);
+[[nodiscard]] Eigen::Vector2d centre_of(Cell cell);
+
 /// Where a round robot may be, worked out as far as it is asked about. Its centre stays in passable cells, its body
 /// over touchable ones (`Ground`); occupied and unknown cells are alike, and everything outside the grid is unknown.
 /// All positions here are in cells: cell (x, y) covers [x, x + 1) x [y, y + 1).
-/// Holds references to the grid and the zones, which must not change meanwhile.
+/// The terrain must outlive it, and change only along with `follow`.
 class FreeSpace {
  public:
   static constexpr int kSide = 64;
   /// 64 x 64 cells, a word per row, bit x.
   using Rows = std::array<std::uint64_t, kSide>;
 
-  enum class NoGo { kHeeded, kIgnored };
+  /// `radius` in cells, finite and not negative.
+  FreeSpace(const Terrain& terrain, double radius);
 
-  /// `radius` in cells, finite and not negative. With `kIgnored` it is as if there were no no-go zones.
-  FreeSpace(const Grid& grid, double radius, const ZoneLayer& zones = no_zones(), NoGo no_go = NoGo::kHeeded);
+  /// The ground of this column of bricks has changed.
+  void follow(BrickIndex column);
 
   /// The passable cells of one tile at whose centre the robot's disc overlaps touchable cells only.
   [[nodiscard]] const Rows& open_rows(Cell tile);
@@ -41,13 +45,11 @@ class FreeSpace {
 
   /// No blocked cell further away than so many rows or columns matters to a cell's being open.
   [[nodiscard]] int reach() const { return reach_; }
-  /// Whether a no-go zone took cells that are free otherwise, in any part that was looked at.
-  [[nodiscard]] bool met_no_go() const { return met_no_go_; }
 
   [[nodiscard]] static Cell tile_of(Cell cell) { return {cell.x >> 6, cell.y >> 6}; }
 
  private:
-  using Tiles = std::unordered_map<Cell, std::unique_ptr<const Rows>, CellHash>;
+  using Tiles = std::unordered_map<Cell, std::unique_ptr<Rows>, CellHash>;
 
   /// One plane of `Ground`, by tiles.
   struct Layer {
@@ -57,17 +59,14 @@ class FreeSpace {
     const Rows* last_rows = nullptr;  ///< of tiles[last_tile]
   };
 
-  [[nodiscard]] Ground ground_at(BrickIndex column);
+  static void put(Rows& rows, BrickIndex column, std::uint64_t plane);
   [[nodiscard]] const Rows& rows(Layer& layer, Cell tile);
   [[nodiscard]] const Rows& edge_rows(Cell tile);
   [[nodiscard]] bool has_row(Layer& layer, std::int32_t y, std::int32_t first, std::int32_t last);
   [[nodiscard]] bool covers(Layer& layer, const Eigen::Vector2d& from, const Eigen::Vector2d& to, double radius);
   void carve(Rows& open, const Rows& edges, int dx, int dy) const;
 
-  const Grid& grid_;
-  const ZoneLayer& zones_;
-  NoGo no_go_;
-  bool met_no_go_ = false;
+  Terrain terrain_;
   double radius_;
   int reach_;                ///< rows above and below a cell that its disc touches
   std::vector<int> widths_;  ///< a blocked cell d rows away closes the cells up to widths_[d] to its left and right

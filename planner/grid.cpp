@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <cmath>
-#include <unordered_map>
 
 namespace concord {
 namespace {
@@ -46,8 +46,26 @@ std::uint64_t occupied_bits(std::uint64_t known, const LogOdds*& value) {
   return occupied;
 }
 
+/// What stands in a column of cells, by whose word.
+struct Standing {
+  std::uint64_t observed = 0, pinned = 0;
+};
+
+/// The same, of a layer of a brick.
+std::uint64_t add_occupied(std::uint64_t known, const LogOdds*& value, Standing& standing) {
+  std::uint64_t occupied = 0;
+  for (std::uint64_t bits = known; bits != 0; bits &= bits - 1) {
+    const LogOdds odds = *value++;
+    if (!is_occupied(odds)) continue;
+    const std::uint64_t bit = bits & (~bits + 1);
+    occupied |= bit;
+    (odds == kPinnedOccupied ? standing.pinned : standing.observed) |= bit;
+  }
+  return occupied;
+}
+
 /// Adds layers [first, last) of a brick to the column below it.
-void add_layers(const Brick& brick, int first, int last, std::uint64_t& occupied, ColumnCounters& free) {
+void add_layers(const Brick& brick, int first, int last, Standing& standing, ColumnCounters& free) {
   const VoxelMask& known = brick.known();
   if (brick.is_uniform()) {
     const bool is_free_brick = is_free(brick.uniform_value());
@@ -55,7 +73,7 @@ void add_layers(const Brick& brick, int first, int last, std::uint64_t& occupied
       if (is_free_brick) {
         free.add(known[layer]);
       } else {
-        occupied |= known[layer];
+        (brick.uniform_value() == kPinnedOccupied ? standing.pinned : standing.observed) |= known[layer];
       }
     }
     return;
@@ -63,9 +81,7 @@ void add_layers(const Brick& brick, int first, int last, std::uint64_t& occupied
   const LogOdds* value = brick.packed().data();
   for (int layer = 0; layer < first; ++layer) value += std::popcount(known[layer]);
   for (int layer = first; layer < last; ++layer) {
-    const std::uint64_t full = occupied_bits(known[layer], value);
-    occupied |= full;
-    free.add(known[layer] & ~full);
+    free.add(known[layer] & ~add_occupied(known[layer], value, standing));
   }
 }
 
@@ -108,6 +124,7 @@ Result<Band> make_band(double zmin, double zmax, double resolution) {
 Grid::Grid(double resolution, Band band, double free_share)
     : resolution_(resolution),
       band_(band),
+      free_share_(free_share),
       needed_(std::max(1, static_cast<std::int32_t>(std::ceil(free_share * band.height() - 1e-9)))) {
   assert(resolution > 0 && band.height() > 0);
   assert(free_share > 0 && free_share <= 1);
@@ -143,7 +160,7 @@ std::vector<ColumnChange> Grid::update(const BrickMap& map, std::span<const Bric
 }
 
 Grid::Planes Grid::project(std::span<const Tile* const> tiles, std::int32_t first_tile, int column) const {
-  std::uint64_t occupied = 0;
+  Standing standing;
   ColumnCounters free;
   for (std::size_t i = 0; i < tiles.size(); ++i) {
     if (tiles[i] == nullptr) continue;
@@ -153,16 +170,36 @@ Grid::Planes Grid::project(std::span<const Tile* const> tiles, std::int32_t firs
       const std::int32_t bottom = ((first_tile + static_cast<std::int32_t>(i)) * kTileSide + level) * kBrickSide;
       const int first = std::clamp(band_.first - bottom, 0, kBrickSide);
       const int last = std::clamp(band_.last - bottom, 0, kBrickSide);
-      if (first < last) add_layers(*brick, first, last, occupied, free);
+      if (first < last) add_layers(*brick, first, last, standing, free);
     }
   }
-  return {occupied, free.at_least(needed_) & ~occupied};
+  const std::uint64_t occupied = standing.observed | standing.pinned;
+  return {occupied, free.at_least(needed_) & ~occupied, standing.pinned & ~standing.observed};
+}
+
+void Grid::see(BrickIndex column, std::uint64_t known) {
+  if (known == 0) return;
+  std::uint64_t columns = known | known >> 32;
+  columns |= columns >> 16;
+  columns = (columns | columns >> 8) & 0xFF;
+  const Cell corner{column.x * kBrickSide, column.y * kBrickSide};
+  seen_.low = {std::min(seen_.low.x, corner.x + std::countr_zero(columns)),
+               std::min(seen_.low.y, corner.y + std::countr_zero(known) / kBrickSide)};
+  seen_.high = {std::max(seen_.high.x, corner.x + 63 - std::countl_zero(columns)),
+                std::max(seen_.high.y, corner.y + (63 - std::countl_zero(known)) / kBrickSide)};
 }
 
 bool Grid::replace(BrickIndex column, const Planes& now, ColumnChange& change) {
+  see(column, now.occupied | now.free);
+  const bool pins_changed = now.pinned != pinned(column);
+  if (now.pinned != 0) {
+    pinned_[column] = now.pinned;
+  } else if (pins_changed) {
+    pinned_.erase(column);
+  }
   const std::uint64_t was_free = free_plane(cells_.find(column));
   change = {column, was_free & ~now.free, now.free & ~was_free};
-  return cells_.set(column, to_brick(now.occupied, now.free));
+  return cells_.set(column, to_brick(now.occupied, now.free)) || pins_changed;
 }
 
 std::uint64_t free_plane(const Brick* brick) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "core/brick_map.hpp"
@@ -45,23 +46,37 @@ class Grid {
   [[nodiscard]] LogOdds at(Cell cell) const { return cells_.at(VoxelIndex{cell.x, cell.y, 0}); }
   /// The cells as voxels with z = 0, kOccupied or kFree: what is streamed.
   [[nodiscard]] const BrickMap& cells() const { return cells_; }
+  /// Cells of a column of bricks that are occupied by nothing but what people pinned; bit x + 8 y.
+  [[nodiscard]] std::uint64_t pinned(BrickIndex column) const {
+    const auto it = pinned_.find(column);
+    return it != pinned_.end() ? it->second : 0;
+  }
+  /// A rectangle that holds all cells that were ever known; nothing outside it was observed.
+  [[nodiscard]] const Window& seen() const { return seen_; }
+  [[nodiscard]] bool has_pinned() const { return !pinned_.empty(); }
   [[nodiscard]] double resolution() const { return resolution_; }
   [[nodiscard]] const Band& band() const { return band_; }
+  [[nodiscard]] double free_share() const { return free_share_; }
 
  private:
   struct Planes {
     std::uint64_t occupied = 0, free = 0;
+    std::uint64_t pinned = 0;  ///< of the occupied ones, those that only people made so
   };
 
   [[nodiscard]] Planes project(std::span<const Tile* const> tiles, std::int32_t first_tile, int column) const;
+  void see(BrickIndex column, std::uint64_t known);
   bool replace(BrickIndex column, const Planes& now, ColumnChange& change);
 
   double resolution_;
   Band band_;
+  double free_share_;
   std::int32_t needed_;                                             ///< free voxels that make a cell free
   std::int32_t lowest_ = std::numeric_limits<std::int32_t>::max();  ///< bricks ever touched in the band, z
   std::int32_t highest_ = std::numeric_limits<std::int32_t>::min();
   BrickMap cells_;
+  Window seen_{{kMaxVoxel, kMaxVoxel}, {-kMaxVoxel, -kMaxVoxel}};
+  std::unordered_map<BrickIndex, std::uint64_t, IndexHash> pinned_;
 };
 
 /// Free cells of a column of the grid, and of any map whose cells are voxels with z = 0.

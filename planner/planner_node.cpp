@@ -8,6 +8,9 @@ namespace {
 
 constexpr std::int64_t kTick = 50'000;  ///< map changes are gathered for so long, microseconds
 
+/// Merge says each second how its map is; after so long without a word nothing new is planned on it, microseconds.
+constexpr std::int64_t kStale = 10'000'000;
+
 Grid make_grid(const Site& site) {
   const Result<Band> band = make_band(site.planner.zmin, site.planner.zmax, site.resolution);
   if (!band) throw ConfigError("planner: " + band.error().message);
@@ -32,26 +35,36 @@ PlannerNode::PlannerNode(const NodeContext& context)
       zones_(context.bus, context.counters, "out/zones", [this](const std::vector<Zone>&) { on_zones(); }),
       label_zones_(context.bus, context.counters, "out/label_zones", [this](const std::vector<Zone>&) {
         if (zones_.synced()) on_zones();  // else they are still to come
-      }) {
+      }),
+      watches_(context),
+      blamed_(context) {
   Bus& bus = context_.bus;
   Counters& counters = context_.counters;
   const std::string& self = context_.process;
   listen<BrickPacket>(bus, counters, self, "out/map/bricks",
                       [this](const std::string&, const BrickPacket& packet) { receiver_.on_packet(packet); });
-  listen<BrickDigest>(bus, counters, self, "out/map/digest",
-                      [this](const std::string&, const BrickDigest& digest) { receiver_.on_digest(digest); });
+  listen<BrickDigest>(bus, counters, self, "out/map/digest", [this](const std::string&, const BrickDigest& digest) {
+    map_heard_ = context_.bus.now();
+    receiver_.on_digest(digest);
+  });
   listen<MapPose>(bus, counters, self, "out/pose/.*", [this](const std::string& channel, const MapPose& pose) {
-    if (!planner_.set_pose(pose.agent, pose.T_map_base.translation().head<2>())) {
+    const AgentConfig& agent = context_.site.agent(pose.agent);
+    const double radius = agent.kind == "headset" ? 0.0 : agent.radius;
+    if (!planner_.set_pose(pose.agent, pose.T_map_base.translation().head<2>(), radius)) {
       context_.counters.refused(channel, {Code::kTooLarge, "poses of more robots than are kept"});
     }
   });
-  listen<AgentList>(bus, counters, self, "out/agents", [this](const std::string&, const AgentList& list) {
-    std::set<std::string> aligned;
-    for (const AgentState& agent : list.agents) {
-      if (agent.aligned) aligned.insert(agent.id);
+  listen<AgentList>(bus, counters, self, "out/agents",
+                    [this](const std::string&, const AgentList& list) { on_agents(list); });
+  listen<HistoryPart>(bus, counters, self, "out/history", [this](const std::string&, const HistoryPart& part) {
+    const auto blamed = blamed_.take(part);
+    if (!blamed) return;
+    if (const auto path = planner_.name_edit(blamed->robot, blamed->path_id, blamed->edit, blamed->author)) {
+      publish(*path);
     }
-    planner_.keep_poses(aligned);
   });
+  listen<PathWatch>(bus, counters, self, "in/path_watch",
+                    [this](const std::string& channel, const PathWatch& watch) { on_watch(channel, watch); });
   listen<PathRequest>(bus, counters, self, "in/path_request",
                       [this](const std::string&, const PathRequest& request) { on_request(request); });
   bus.every(kTick, [this] {
@@ -84,6 +97,8 @@ void PlannerNode::project() {
 
 /// What changed, and once a second what did not: the bus may lose a path, and silence means that none is kept.
 void PlannerNode::speak() {
+  planner_.set_stale(map_heard_ != 0 && context_.bus.now() - map_heard_ > kStale);
+  for (const Planner::Reply& answered : planner_.serve(moment())) reply(answered);
   for (const Path& path : planner_.replan(moment())) {
     context_.counters.add("paths." + path.status);
     publish(path);
@@ -92,20 +107,82 @@ void PlannerNode::speak() {
   context_.counters.set("active_paths", static_cast<std::int64_t>(planner_.active_count()));
 }
 
+void PlannerNode::on_agents(const AgentList& list) {
+  std::set<std::string> aligned;
+  for (const AgentState& agent : list.agents) {
+    if (agent.aligned) aligned.insert(agent.id);
+  }
+  planner_.keep_poses(aligned);
+  for (const std::string& moved : watches_.set_agents(list)) {
+    for (const Path& path : planner_.kept()) watches_.say(path, moved);
+  }
+}
+
+Robot PlannerNode::robot(const std::string& id) const {
+  const AgentConfig& agent = context_.site.agent(id);
+  return {agent.radius, agent.speed, agent.band};
+}
+
 void PlannerNode::on_request(const PathRequest& request) {
+  if (request.op == PathRequest::Op::kCancel) return cancel(request);
   project();
-  auto [path, ended] = planner_.request(request, context_.site.agent(request.robot).radius, moment());
+  reply(planner_.request(request, robot(request.robot), moment()));
+}
+
+/// Asked again it finds nothing left, and that is as good.
+void PlannerNode::cancel(const PathRequest& request) {
+  const std::vector<Planner::Cancelled> ended = planner_.cancel(request.robot, moment());
+  for (const auto& [path, was_answered] : ended) {
+    context_.counters.add("paths." + path.status);
+    publish(path);
+    if (!was_answered) {
+      answer(context_.bus, {path.id, context_.process, false, path.status, path.message, path.map_revision, 0});
+    }
+  }
+  answer(context_.bus, {request.id, context_.process, true, "OK",
+                        ended.empty() ? "nothing was kept or waited for " + request.robot : "cancelled",
+                        receiver_.revision(), static_cast<std::int64_t>(ended.size())});
+}
+
+void PlannerNode::on_watch(const std::string& channel, const PathWatch& watch) {
+  const Result<void> watched = watches_.watch(watch);
+  if (!watched) context_.counters.refused(channel, watched.error());
+  std::int64_t count = 0;
+  for (const Path& path : planner_.kept()) {
+    if (!watched || (!watch.robot.empty() && watch.robot != path.robot)) continue;
+    watches_.say(path, watch.frame_agent);
+    ++count;
+  }
+  answer(context_.bus,
+         {watch.id, context_.process, watched.has_value(), watched ? "OK" : name(watched.error().code),
+          watched ? "watched for 30 s: ask again before" : watched.error().message, receiver_.revision(), count});
+}
+
+/// Without a path the request waits for its turn.
+void PlannerNode::reply(const Planner::Reply& reply) {
+  if (!reply.path) return;
+  Path path = *reply.path;
   const bool ok = path.status == name(Reason::kOk);
   if (!ok && !receiver_.synced()) path.message += "; the map has not fully arrived yet";
   if (ok && !zones_.synced()) path.message += "; a change of the zones is under way";
   context_.counters.add("paths." + path.status);
-  if (ended) publish(*ended);
+  if (reply.ended) publish(*reply.ended);
   publish(path);
   answer(context_.bus, {path.id, context_.process, ok, path.status, path.message, path.map_revision,
                         static_cast<std::int64_t>(path.points.size())});
 }
 
-void PlannerNode::publish(const Path& path) { context_.bus.publish("out/path/" + path.robot, encode(path)); }
+void PlannerNode::publish(const Path& path) {
+  context_.bus.publish("out/path/" + path.robot, encode(path));
+  watches_.say(path);
+  if (path.status == name(Reason::kBlockedByEdit) && path.edit_id.empty()) blame(path);
+}
+
+/// Once for each path: it is said again when its edit is known.
+void PlannerNode::blame(const Path& path) {
+  const auto cut = planner_.cut_of(path.robot, path.path_id);
+  if (cut) blamed_.ask(path.robot, path.path_id, cut->p, cut->band);
+}
 
 Planner::Moment PlannerNode::moment() const { return {receiver_.revision(), context_.bus.now()}; }
 

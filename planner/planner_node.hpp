@@ -5,7 +5,9 @@
 #include "bus/brick_stream.hpp"
 #include "bus/list_stream.hpp"
 #include "bus/process.hpp"
+#include "planner/blamed_edits_node.hpp"
 #include "planner/planner.hpp"
+#include "planner/watches_node.hpp"
 
 namespace concord {
 
@@ -22,10 +24,16 @@ class PlannerNode {
  private:
   void on_frame(const std::string& frame_id);
   void on_zones();
+  void on_agents(const AgentList& list);
   void on_request(const PathRequest& request);
+  void cancel(const PathRequest& request);
+  void on_watch(const std::string& channel, const PathWatch& watch);
   void project();
   void speak();
+  void reply(const Planner::Reply& reply);
   void publish(const Path& path);
+  void blame(const Path& path);
+  [[nodiscard]] Robot robot(const std::string& id) const;
   [[nodiscard]] Planner::Moment moment() const;
 
   NodeContext context_;
@@ -34,6 +42,9 @@ class PlannerNode {
   BrickReceiver receiver_;
   ListReceiver<Zone> zones_;
   ListReceiver<Zone> label_zones_;  ///< around things that robots keep away from; none while semantic has said none
+  WatchesNode watches_;
+  BlamedEditsNode blamed_;
+  std::int64_t map_heard_ = 0;
 };
 
 }  // namespace concord

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <optional>
 
-#include "planner/route.hpp"
+#include "planner/ends.hpp"
 #include "planner/se2/pose_check.hpp"
 
 namespace concord {
@@ -16,12 +16,6 @@ PosePlan refusal(Reason reason, std::string message) {
   plan.reason = reason;
   plan.message = std::move(message);
   return plan;
-}
-
-std::string metres(double value) {
-  char text[48];
-  std::snprintf(text, sizeof(text), "%.2f m", value);
-  return text;
 }
 
 }  // namespace
@@ -52,7 +46,7 @@ bool PosePlanner::holds(BrickIndex column) const {
 }
 
 void PosePlanner::copy(BrickIndex column) {
-  const std::uint64_t passable = ground(grid_, zones_, column).passable;
+  const std::uint64_t passable = Terrain(grid_, zones_).at(column).passable;
   for (int local = 0; local < 64; ++local) {
     const Cell cell{(column.x - low_.x) * 8 + (local & 7), (column.y - low_.y) * 8 + (local >> 3)};
     open_->set(cell, (passable >> local & 1) != 0);

@@ -130,6 +130,16 @@ const std::string* ZoneLayer::no_go_at(Cell cell) const {
   return it != zones_.end() ? &it->zone.name : nullptr;
 }
 
+std::vector<std::string> ZoneLayer::no_go_names(BrickIndex column) const {
+  std::vector<std::string> names;
+  for (const Drawn& zone : zones_) {
+    if (!zone.is_no_go()) continue;
+    const std::uint64_t cells = zone.is_fine ? zone.cells.bounds.plane(column) : zone.around.plane(column);
+    if (cells != 0 && (!zone.is_fine || zone.cells.plane(column) != 0)) names.push_back(zone.zone.name);
+  }
+  return names;
+}
+
 std::optional<ZoneLayer::Near> ZoneLayer::nearest_no_go(const Eigen::Vector2d& p, double reach) const {
   if (!has_no_go_) return std::nullopt;
   const auto brick = [](double cells) { return static_cast<std::int32_t>(std::floor(cells / kBrickSide)); };
@@ -162,14 +172,6 @@ std::vector<std::string> ZoneLayer::coarse() const {
 const ZoneLayer& no_zones() {
   static const auto& none = *new ZoneLayer;
   return none;
-}
-
-Ground ground(const Grid& grid, const ZoneLayer& zones, BrickIndex column) {
-  const std::uint64_t free = free_plane(grid.cells().find(column));
-  if (!zones.has_no_go() && !zones.has_contact()) return {free, free, free};
-  const std::uint64_t forbidden = zones.no_go(column);
-  const std::uint64_t passable = free & ~forbidden;
-  return {free, passable, passable | (zones.contact(column) & ~forbidden)};
 }
 
 }  // namespace concord

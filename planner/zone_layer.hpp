@@ -44,6 +44,8 @@ class ZoneLayer {
   [[nodiscard]] std::uint64_t contact(BrickIndex column) const;
   /// The first no-go zone, by name, that holds the cell; null where none does.
   [[nodiscard]] const std::string* no_go_at(Cell cell) const;
+  /// The no-go zones that lie in a column of bricks, by name.
+  [[nodiscard]] std::vector<std::string> no_go_names(BrickIndex column) const;
   struct Near {
     std::string name;
     double distance;  ///< of its nearest cell, in cells
@@ -92,13 +94,5 @@ class ZoneLayer {
 };
 
 [[nodiscard]] const ZoneLayer& no_zones();
-
-/// What the cells of a column of bricks are to a robot; bit x + 8 y.
-struct Ground {
-  std::uint64_t free = 0;       ///< as the grid says
-  std::uint64_t passable = 0;   ///< its centre may be there: free, and in no no-go zone
-  std::uint64_t touchable = 0;  ///< its body may be over it: passable, or contact is allowed and no no-go zone there
-};
-[[nodiscard]] Ground ground(const Grid& grid, const ZoneLayer& zones, BrickIndex column);
 
 }  // namespace concord

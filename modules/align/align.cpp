@@ -15,11 +15,7 @@ namespace {
 constexpr std::size_t kJudgePieces = 20'000;
 constexpr std::size_t kRivalPieces = 6000;
 constexpr int kSettleRounds = 2;
-constexpr double kSettleStep = 0.2;  // metres: twice what the kernel of the finest level heeds
-/// Square metres of walls that lie on walls, both ways: fewer, and a few percent against them are all that tells a room
-/// from its mirror image.
-constexpr double kRoomWalls = 300.0;
-constexpr double kMirrorAgainst = 0.004;           // of the walls: where less is, no mirror image lies better
+constexpr double kSettleStep = 0.2;                // metres: twice what the kernel of the finest level heeds
 constexpr double kMirrorYaw = 5.0 * M_PI / 180.0;  // what walls along walls leave open
 constexpr double kMirrorReach = 6.0;               // metres: a part lies as far on the other side of its room
 
@@ -133,7 +129,7 @@ std::vector<Transform> mirrored_on_the_spot(const AlignMap& source, const Transf
 /// against it, and its mirror image lies better.
 void try_mirrored(const AlignMap& target, const AlignMap& source, const Support& accepted, int threads,
                   Alignment& out) {
-  if (accepted.upright().matched > kRoomWalls || out.against_upright < kMirrorAgainst) return;
+  if (!may_be_mirrored(accepted)) return;
   const AlignMap image = mirrored(source, threads);
   for (const Transform& T : mirrored_on_the_spot(source, out.T_target_source, accepted.weak_direction())) {
     const auto hypotheses = find_hypotheses(target, image, Vicinity{T, kMirrorYaw, kMirrorReach}, threads);

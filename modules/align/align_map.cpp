@@ -91,9 +91,9 @@ Result<AlignMap> make_align_map(const BrickMap& map, double resolution, int thre
   if (!usable(resolution)) return refuse_resolution(resolution);
   Result<AlignMap> out = make(surface_points(map, resolution), resolution, threads);
   if (!out) return out;
-  out->free = FreeSpace::known(map, resolution);
+  out->free = ObservedFreeSpace::known(map, resolution);
   if (static_cast<double>(out->free.block_count()) < kMinFreeShare * static_cast<double>(out->fine().cells().size())) {
-    out->free = FreeSpace::implied(out->fine(), threads);
+    out->free = ObservedFreeSpace::implied(out->fine(), threads);
   }
   orient(*out);
   return out;
@@ -103,7 +103,7 @@ Result<AlignMap> make_align_map(std::span<const Eigen::Vector3f> cloud, double r
   if (!usable(resolution)) return refuse_resolution(resolution);
   Result<AlignMap> out = make(surface_points(cloud), resolution, threads);
   if (!out) return out;
-  out->free = FreeSpace::implied(out->fine(), threads);
+  out->free = ObservedFreeSpace::implied(out->fine(), threads);
   orient(*out);
   return out;
 }

@@ -17,7 +17,7 @@ struct AlignMap {
   double resolution = 0.0;
   SurfacePoints points;
   std::vector<SurfaceLevel> levels;  ///< finest first: twice the resolution, 0.25 m, 0.5 m
-  FreeSpace free;
+  ObservedFreeSpace free;
   /// Turns the map's frame upright, as its own floors and walls have it.
   Eigen::Matrix3d R_upright_map = Eigen::Matrix3d::Identity();
 

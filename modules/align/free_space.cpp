@@ -99,8 +99,8 @@ double highest_floor(const SurfaceLevel& surface) {
 
 }  // namespace
 
-FreeSpace FreeSpace::known(const BrickMap& map, double resolution) {
-  FreeSpace out;
+ObservedFreeSpace ObservedFreeSpace::known(const BrickMap& map, double resolution) {
+  ObservedFreeSpace out;
   out.block_ = 2.0 * resolution;
   out.per_metre_ = 1.0 / out.block_;
   for (const BrickIndex index : map.sorted_bricks()) {
@@ -111,8 +111,8 @@ FreeSpace FreeSpace::known(const BrickMap& map, double resolution) {
   return out;
 }
 
-FreeSpace FreeSpace::implied(const SurfaceLevel& surface, int threads) {
-  FreeSpace out;
+ObservedFreeSpace ObservedFreeSpace::implied(const SurfaceLevel& surface, int threads) {
+  ObservedFreeSpace out;
   out.block_ = surface.size();
   out.per_metre_ = 1.0 / out.block_;
   const Walker walker(surface);
@@ -137,8 +137,8 @@ FreeSpace FreeSpace::implied(const SurfaceLevel& surface, int threads) {
   return out;
 }
 
-FreeSpace FreeSpace::mirrored() const {
-  FreeSpace out;
+ObservedFreeSpace ObservedFreeSpace::mirrored() const {
+  ObservedFreeSpace out;
   out.block_ = block_;
   out.per_metre_ = per_metre_;
   for (std::size_t i = 0; i < blocks_.words().size(); ++i) {
@@ -151,15 +151,15 @@ FreeSpace FreeSpace::mirrored() const {
   return out;
 }
 
-bool FreeSpace::contains(const Eigen::Vector3d& p) const { return blocks_.contains(cell_of(p, per_metre_)); }
+bool ObservedFreeSpace::contains(const Eigen::Vector3d& p) const { return blocks_.contains(cell_of(p, per_metre_)); }
 
-std::size_t FreeSpace::block_count() const {
+std::size_t ObservedFreeSpace::block_count() const {
   std::size_t count = 0;
   for (const std::uint64_t blocks : blocks_.words()) count += std::popcount(blocks);
   return count;
 }
 
-std::vector<FreeColumn> FreeSpace::columns() const {
+std::vector<FreeColumn> ObservedFreeSpace::columns() const {
   std::vector<FreeColumn> out;
   for (std::size_t i = 0; i < blocks_.words().size(); ++i) {
     const VoxelIndex at = blocks_.bricks()[i];

@@ -22,15 +22,15 @@ struct FreeColumn {
 /// A map of voxels says so itself. A cloud does not; but who saw two pieces of surface that face each other, and
 /// nothing on the straight line between them, has seen that nothing is there; and who saw a floor, that no wall stands
 /// on it.
-class FreeSpace {
+class ObservedFreeSpace {
  public:
-  FreeSpace() = default;
-  [[nodiscard]] static FreeSpace known(const BrickMap& map, double resolution);
+  ObservedFreeSpace() = default;
+  [[nodiscard]] static ObservedFreeSpace known(const BrickMap& map, double resolution);
   /// What a surface lets one conclude. @pre z up.
-  [[nodiscard]] static FreeSpace implied(const SurfaceLevel& surface, int threads);
+  [[nodiscard]] static ObservedFreeSpace implied(const SurfaceLevel& surface, int threads);
 
   /// Of the map as a mirror in the plane x = 0 shows it.
-  [[nodiscard]] FreeSpace mirrored() const;
+  [[nodiscard]] ObservedFreeSpace mirrored() const;
 
   [[nodiscard]] bool contains(const Eigen::Vector3d& p) const;
   /// All of it in pieces, in a fixed order.

@@ -38,6 +38,7 @@ constexpr double kMoreLevelAgainst = 0.04;
 /// Refinement takes some of what speaks against a rough place away.
 constexpr double kRoughAgainst = 0.15;
 constexpr double kRoughLevelAgainst = 0.25;
+constexpr double kMirrorAgainst = 0.004;
 /// By how much a mirror image must be better: what noise makes of two that are as good.
 constexpr double kMirroredShare = 1.02;
 constexpr double kMirroredMore = 1.0;  // square metres
@@ -127,6 +128,10 @@ bool is_rival(const Support& place, const Support& accepted) {
   const double levels = std::max(kMaxLevelAgainst, accepted.level().share_against() + kMoreLevelAgainst);
   return overlap(place) >= kWithGuess.min_overlap && upright.share_against() <= walls &&
          place.level().share_against() <= levels;
+}
+
+bool may_be_mirrored(const Support& accepted) {
+  return accepted.upright().matched <= kBuildingWalls && accepted.upright().share_against() >= kMirrorAgainst;
 }
 
 bool is_better_mirrored(const Support& mirrored, const Support& accepted) {

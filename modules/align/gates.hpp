@@ -27,6 +27,9 @@ struct GateAnswer {
 /// hardly more than against the other; however loosely it is held.
 [[nodiscard]] bool is_rival(const Support& place, const Support& accepted);
 
+/// Whether a place may be that of a mirror image: in a room, below what is a building, a few percent of the walls are
+/// all that tells the two apart; and where hardly anything is against the source, no mirror image lies better.
+[[nodiscard]] bool may_be_mirrored(const Support& accepted);
 /// Whether the source's mirror image lies better in the target than the source itself does: one of the two is
 /// mirrored, or they are two rooms of one plan.
 [[nodiscard]] bool is_better_mirrored(const Support& mirrored, const Support& accepted);

@@ -175,6 +175,7 @@ struct ListRequest {
 [[nodiscard]] Bytes encode(const MapRequest& value, std::int64_t utime);
 [[nodiscard]] Bytes encode(const MapList& value, std::int64_t utime);
 [[nodiscard]] Bytes encode(const PathRequest& value, std::int64_t utime);
+[[nodiscard]] Bytes encode(const PathWatch& value, std::int64_t utime);
 [[nodiscard]] Bytes encode(const Path& value);
 [[nodiscard]] Bytes encode(const AlignRequest& value);
 [[nodiscard]] Bytes encode(const AlignDecision& value);
@@ -256,6 +257,8 @@ template <>
 Decoded<MapList> decode(std::span<const std::uint8_t> bytes);
 template <>
 Decoded<PathRequest> decode(std::span<const std::uint8_t> bytes);
+template <>
+Decoded<PathWatch> decode(std::span<const std::uint8_t> bytes);
 template <>
 Decoded<Path> decode(std::span<const std::uint8_t> bytes);
 template <>

@@ -1,4 +1,4 @@
-// Translators of what the stack says: answers, paths, agents, status.
+// Translators of what the stack says: answers, agents, status.
 
 #include <concord/agents_t.hpp>
 #include <concord/answer_t.hpp>
@@ -6,10 +6,7 @@
 #include <concord/frame_over_t.hpp>
 #include <concord/map_list_t.hpp>
 #include <concord/map_pose_t.hpp>
-#include <concord/path_t.hpp>
 #include <concord/status_t.hpp>
-
-#include <cmath>
 
 #include "bus/translate.hpp"
 #include "core/octomap_format.hpp"
@@ -19,19 +16,10 @@ namespace {
 
 using wire::bad;
 
-constexpr std::int64_t kMaxPathPoints = 1'000'000;
 constexpr std::int64_t kMaxFiles = 10'000;
 constexpr std::int64_t kMaxFileName = 100;
 constexpr std::int64_t kMaxAgents = 1024;
 constexpr std::int64_t kMaxCounterName = 160;
-
-std::string clipped(std::string text) {
-  if (text.size() <= static_cast<std::size_t>(wire::kMessageLength)) return text;
-  std::size_t size = wire::kMessageLength;
-  while (size > 0 && (text[size] & 0xC0) == 0x80) --size;  // not within a character of UTF-8
-  text.resize(size);
-  return text;
-}
 
 agent_state_t to_wire(const AgentState& agent) {
   agent_state_t out;
@@ -141,54 +129,6 @@ Decoded<MapList> decode<MapList>(std::span<const std::uint8_t> bytes) {
   return out;
 }
 
-Bytes encode(const Path& value) {
-  path_t out;
-  out.utime = value.utime;
-  out.request_id = value.id;
-  out.robot = value.robot;
-  out.status = value.status;
-  out.message = clipped(value.message);
-  out.map_revision = value.map_revision;
-  out.plan_number = value.plan_number;
-  out.active = value.active;
-  out.length = value.length;
-  out.least_clearance = value.least_clearance;
-  wire::put_points(value.points, out);
-  return wire::to_bytes(out);
-}
-
-template <>
-Decoded<Path> decode<Path>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {fixed(8),
-                                          text(wire::kIdLength),
-                                          text(wire::kNameLength),
-                                          text(wire::kNameLength),
-                                          text(wire::kMessageLength),
-                                          fixed(8 + 8 + 1 + 8 + 8),
-                                          count(kMaxPathPoints),
-                                          array(8),
-                                          array(8),
-                                          array(8)};
-  const auto in = wire::from_bytes<path_t>(bytes, kLayout);
-  if (!in) return bad(in.error());
-  Path out;
-  out.id = in->request_id;
-  out.robot = in->robot;
-  out.status = in->status;
-  out.message = in->message;
-  out.length = in->length;
-  out.least_clearance = in->least_clearance;
-  out.map_revision = in->map_revision;
-  out.plan_number = in->plan_number;
-  out.active = in->active != 0;
-  out.utime = in->utime;
-  out.points = wire::points_of<Eigen::Vector3d>(*in);
-  if (!wire::all_finite(out.points) || !std::isfinite(out.length) || !std::isfinite(out.least_clearance)) {
-    return bad(Code::kNotFinite, "a path has a number that is not finite");
-  }
-  return out;
-}
-
 Bytes encode(const Answer& value, std::int64_t utime) {
   answer_t out;
   out.utime = utime;
@@ -196,7 +136,7 @@ Bytes encode(const Answer& value, std::int64_t utime) {
   out.process = value.process;
   out.ok = value.ok;
   out.code = value.code;
-  out.message = clipped(value.message);
+  out.message = wire::clipped(value.message);
   out.revision = value.revision;
   out.count = value.count;
   return wire::to_bytes(out);

@@ -4,7 +4,6 @@
 #include <concord/agent_request_t.hpp>
 #include <concord/downsample_request_t.hpp>
 #include <concord/map_request_t.hpp>
-#include <concord/path_request_t.hpp>
 
 #include "bus/translate.hpp"
 
@@ -119,41 +118,6 @@ Decoded<MapRequest> decode<MapRequest>(std::span<const std::uint8_t> bytes) {
     return bad(Code::kBadRequest, "format must be bt, ot or concord", out.id);
   }
   if (!out.agent.empty() && !is_name(out.agent)) return bad_agent(out.id);
-  return out;
-}
-
-Bytes encode(const PathRequest& value, std::int64_t utime) {
-  path_request_t out;
-  out.utime = utime;
-  out.request_id = value.id;
-  out.robot = value.robot;
-  out.has_start = value.start.has_value();
-  const Eigen::Vector2d start = value.start.value_or(Eigen::Vector2d::Zero());
-  for (int i = 0; i < 2; ++i) {
-    out.start[i] = start[i];
-    out.goal[i] = value.goal[i];
-  }
-  out.radius = value.radius;
-  out.keep_active = value.keep_active;
-  return wire::to_bytes(out);
-}
-
-template <>
-Decoded<PathRequest> decode<PathRequest>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength), text(wire::kNameLength),
-                                          fixed(1 + 16 + 16 + 8 + 1)};
-  const auto in = wire::request_from_bytes<path_request_t>(bytes, kLayout);
-  if (!in) return tl::unexpected(in.error());
-  if (!is_name(in->robot)) return bad_agent(in->request_id);
-  PathRequest out{in->request_id, in->robot,           std::nullopt, {in->goal[0], in->goal[1]},
-                  in->radius,     in->keep_active != 0};
-  if (in->has_start) out.start = Eigen::Vector2d(in->start[0], in->start[1]);
-  const auto finite = [](const Eigen::Vector2d& p) { return p.allFinite() && p.cwiseAbs().maxCoeff() < 10'000; };
-  if (!finite(out.goal) || (out.start && !finite(*out.start))) {
-    return bad(Code::kNotFinite, "start and goal must be finite, in metres, within 10 km", out.id);
-  }
-  if (!(out.radius >= 0 && out.radius <= 10))
-    return bad(Code::kBadRequest, "radius must lie between 0 and 10 m", out.id);
   return out;
 }
 

@@ -1,6 +1,8 @@
 #include "bus/site.hpp"
 
+#include <cmath>
 #include <fstream>
+#include <limits>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -85,12 +87,28 @@ class Section {
   std::set<std::string> known_;
 };
 
+/// Both heights or none.
+void read_band(Section& section, const std::string& name, AgentConfig& agent) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  double zmin = agent.band ? agent.band->first : kNone;
+  double zmax = agent.band ? agent.band->second : kNone;
+  section.read("zmin", zmin);
+  section.read("zmax", zmax);
+  if (std::isnan(zmin) && std::isnan(zmax)) return;
+  if (!(zmin < zmax && zmin >= -1000 && zmax <= 1000)) {
+    throw ConfigError(name + " needs both zmin and zmax, from -1000 to 1000 m, zmin below zmax");
+  }
+  agent.band = {zmin, zmax};
+}
+
 AgentConfig read_agent(const YAML::Node& node, const std::string& name, AgentConfig agent) {
   Section section(node, name);
   section.read(
       "kind", agent.kind, [](const std::string& kind) { return is_name(kind); }, "1 to 40 of A-Z a-z 0-9 . _ -");
   section.read("weight", agent.weight, 1, 1000);
   section.read("radius", agent.radius, 0.0, 10.0);
+  section.read("speed", agent.speed, 0.01, 100.0);
+  read_band(section, name, agent);
   section.done();
   return agent;
 }
@@ -231,6 +249,10 @@ std::string to_yaml(const Site& site) {
     root["agents"][id]["kind"] = agent.kind;
     root["agents"][id]["weight"] = agent.weight;
     root["agents"][id]["radius"] = agent.radius;
+    root["agents"][id]["speed"] = agent.speed;
+    if (!agent.band) return;
+    root["agents"][id]["zmin"] = agent.band->first;
+    root["agents"][id]["zmax"] = agent.band->second;
   };
   put_agent("unlisted", site.unlisted);
   for (const auto& [id, agent] : site.agents) put_agent(id, agent);

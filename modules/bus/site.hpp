@@ -3,8 +3,10 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/policy.hpp"
@@ -16,6 +18,9 @@ struct AgentConfig {
   std::string kind = "unknown";
   int weight = 1;       ///< 1 to 1000
   double radius = 0.3;  ///< metres; as a robot on the grid
+  double speed = 0.5;   ///< m/s along a path
+  /// Heights that it takes up, map z, metres; absent: the planner's band.
+  std::optional<std::pair<double, double>> band;
 };
 
 /// The one YAML file of a site: a section per process, unknown keys are errors. Defaults stand here.

@@ -192,6 +192,15 @@ template <class Lcm>
   return WorkFrame{in.frame_agent, in.frame_id};
 }
 
+/// A text for people, cut to what its message takes.
+[[nodiscard]] inline std::string clipped(std::string text) {
+  if (text.size() <= static_cast<std::size_t>(kMessageLength)) return text;
+  std::size_t size = kMessageLength;
+  while (size > 0 && (text[size] & 0xC0) == 0x80) --size;  // not within a character of UTF-8
+  text.resize(size);
+  return text;
+}
+
 template <class Points>
 [[nodiscard]] bool all_finite(const Points& points) {
   return std::all_of(points.begin(), points.end(), [](const auto& p) { return p.allFinite(); });

@@ -1,4 +1,4 @@
-// goal, paths: where robots are sent, and the paths that the planner keeps up to date.
+// goal, cancel, paths: where robots are sent, and the paths that the planner keeps up to date.
 
 #include <memory>
 
@@ -20,6 +20,7 @@ constexpr double kListen = 2.5;
 struct Goal {
   std::string robot, from;
   std::vector<double> to;
+  std::vector<std::string> via;
   double radius = 0.0;  ///< 0: the site file's
 };
 
@@ -34,15 +35,44 @@ Outcome goal(const Goal& goal, const Common& common) {
     if (!from) return fail(from.error());
     request.start = *from;
   }
+  for (const std::string& place : goal.via) {
+    const auto waypoint = parse_point(place);
+    if (!waypoint) return fail(waypoint.error());
+    request.waypoints.push_back(*waypoint);
+  }
   return ask_path(std::move(request), common);
 }
 
-Outcome paths(const Common& common) {
+Outcome cancel(const std::string& robot, const Common& common) {
+  if (!is_name(robot)) return bad_name(robot);
+  Live live(common);
+  PathRequest request;
+  request.id = live.new_id();
+  request.robot = robot;
+  request.op = PathRequest::Op::kCancel;
+  const auto answer = live.ask("in/path_request", request);
+  if (!answer) return tl::unexpected(answer.error());
+  common.print(to_json(*answer), answer->message);
+  return Exit::kDone;
+}
+
+/// Has the planner say its paths in an agent's frame for a while.
+tl::expected<void, Failure> watch(Live& live, const std::string& frame) {
+  const auto answer = live.ask("in/path_watch", PathWatch{live.new_id(), "", frame});
+  return answer ? tl::expected<void, Failure>() : tl::unexpected(answer.error());
+}
+
+Outcome paths(const std::string& frame, const Common& common) {
+  if (!frame.empty() && !is_name(frame)) return bad_name(frame);
   Live live(common);
   KeptPaths kept;
   bool has_planner = false;
-  live.hear<Path>("out/path/.*", [&](const std::string&, const Path& path) { take(kept, path); });
+  live.hear<Path>(frame.empty() ? "out/path/.*" : "out/path_in/" + frame,
+                  [&](const std::string&, const Path& path) { take(kept, path); });
   live.hear<ProcessStatus>("out/status/planner", [&](const std::string&, const ProcessStatus&) { has_planner = true; });
+  if (!frame.empty()) {
+    if (const auto watched = watch(live, frame); !watched) return tl::unexpected(watched.error());
+  }
   live.wait(kListen, [] { return false; });
   if (!has_planner) return live.no_answer("the planner");
   common.print(to_json(kept), to_words(kept));
@@ -105,9 +135,21 @@ void add_goals(Program& program) {
   go.add_option("goal", options->to, "x y, map frame, metres")->expected(2)->required();
   go.add_option("--from", options->from,
                 "\"x y\", map frame; without it the robot's last pose, also when planned anew");
+  go.add_option("--via", options->via, "\"x y\", map frame, metres: a place to pass first; may be given again");
   go.add_option("--radius", options->radius, "of the robot, metres; without it the site file's")->check(kRobotRadius);
 
-  program.add("paths", "the paths that the planner keeps up to date", paths);
+  auto robot = std::make_shared<std::string>();
+  program
+      .add("cancel", "ends the path that the planner keeps for a robot, and what waits for it",
+           [robot](const Common& common) { return cancel(*robot, common); })
+      .add_option("robot", *robot, "the robot's id")
+      ->required();
+
+  auto frame = std::make_shared<std::string>();
+  program
+      .add("paths", "the paths that the planner keeps up to date",
+           [frame](const Common& common) { return paths(*frame, common); })
+      .add_option("--frame", *frame, "in the frame of this agent, which must be aligned; without it the map's");
 }
 
 }  // namespace concord

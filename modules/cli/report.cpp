@@ -81,6 +81,10 @@ nlohmann::json to_json(const Path& path) {
   const bool found = path.status == "OK";
   nlohmann::json points = nlohmann::json::array();
   for (const Eigen::Vector3d& p : path.points) points.push_back({p.x(), p.y(), p.z()});
+  nlohmann::json details = nlohmann::json::array();
+  for (const PathPoint& point : path.details) {
+    details.push_back({{"yaw", point.yaw}, {"clearance", point.clearance}, {"leg", point.leg}, {"eta", point.eta}});
+  }
   return {{"status", path.status},
           {"message", path.message},
           {"length", found ? nlohmann::json(path.length) : nlohmann::json()},
@@ -88,6 +92,15 @@ nlohmann::json to_json(const Path& path) {
           {"map_revision", path.map_revision},
           {"plan_number", path.plan_number},
           {"active", path.active},
+          {"path_id", path.path_id},
+          {"superseded", path.superseded},
+          {"edit_id", path.edit_id},
+          {"failed_leg", path.failed_leg},
+          {"nearest", path.nearest ? nlohmann::json{path.nearest->x(), path.nearest->y()} : nlohmann::json()},
+          {"zones", path.zones},
+          {"radius", path.radius},
+          {"frame", path.frame_agent},
+          {"details", details},
           {"points", points}};
 }
 
@@ -99,7 +112,11 @@ nlohmann::json to_json(const Answer& answer) {
 std::string to_words(const Path& path) {
   const char* kept = "; it is kept up to date until the robot's next goal (concord paths)";
   const char* tried = "; it is tried again as the map changes, until the robot's next goal (concord paths)";
-  if (path.status != "OK") return path.status + ": " + path.message + (path.active ? tried : "");
+  const std::string nearest = path.nearest
+                                  ? "; the nearest place that can be reached is " +
+                                        format_number(path.nearest->x(), 2) + " " + format_number(path.nearest->y(), 2)
+                                  : "";
+  if (path.status != "OK") return path.status + ": " + path.message + nearest + (path.active ? tried : "");
   return "path of " + format_number(path.length, 2) + " m, " + std::to_string(path.points.size()) +
          " points, least clearance " + format_number(path.least_clearance, 2) + " m" + (path.active ? kept : "");
 }

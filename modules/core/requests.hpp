@@ -52,14 +52,27 @@ struct MapRequest {
   std::int64_t utime = 0;  ///< when it was asked
 };
 
-/// Asks for a path on the grid. With `keep_active` it is replanned whenever a change of the map touches it.
+inline constexpr std::size_t kMaxWaypoints = 1000;
+
+/// Asks for a path on the grid. With `keep_active` it is replanned whenever a change of the map touches it. `kCancel`
+/// ends what is kept or waits for the robot; nothing else is heeded then.
 struct PathRequest {
+  enum class Op { kPlan, kCancel };
   std::string id;
   std::string robot;
   std::optional<Eigen::Vector2d> start;  ///< map frame; absent: the robot's last pose
   Eigen::Vector2d goal = Eigen::Vector2d::Zero();
   double radius = 0.0;  ///< robot radius; 0: the site file's for this robot
   bool keep_active = false;
+  std::vector<Eigen::Vector2d> waypoints;  ///< to pass on the way, in this order; at most kMaxWaypoints
+  Op op = Op::kPlan;
+};
+
+/// Asks for a robot's kept path in an agent's frame.
+struct PathWatch {
+  std::string id;
+  std::string robot;        ///< empty: all robots'
+  std::string frame_agent;  ///< in whose frame
 };
 
 /// Where a robot is in its own frame.
@@ -81,19 +94,38 @@ struct Answer {
   std::int64_t count = 0;  ///< voxels, bytes or items concerned
 };
 
-/// The planner's word on one path request; `poses` is empty unless status is "OK".
+/// What is known of one point of a path.
+struct PathPoint {
+  double yaw = 0.0;        ///< where the path goes on to; at the last point as before it
+  double clearance = 0.0;  ///< metres to an occupied or unknown cell
+  std::int32_t leg = 0;    ///< that ends there or beyond
+  double eta = 0.0;        ///< seconds from the start
+};
+
+/// The planner's word on one path request; `points` is empty unless status is "OK".
 struct Path {
   std::string id;
   std::string robot;
   std::string status;                   ///< "OK" or a reason, see planner/README.md
   std::string message;                  ///< for a person
-  std::vector<Eigen::Vector3d> points;  ///< map frame, z on the floor of the band
+  std::vector<Eigen::Vector3d> points;  ///< z on the floor of the band
   double length = 0.0;
   double least_clearance = 0.0;
   std::int64_t map_revision = 0;
   std::int64_t plan_number = 0;  ///< counts up with each replanning of one request
   bool active = false;
   std::int64_t utime = 0;
+  std::vector<PathPoint> details;  ///< of each point
+  std::int64_t path_id = 0;        ///< no two of one planner's are alike
+  std::int64_t superseded = 0;     ///< path_id of the path whose place it took; 0: none
+  std::string edit_id;             ///< that cut the way off, where it is known
+  std::string frame_agent;         ///< in whose frame the points are; empty: the map's
+  std::string frame_id;
+  double radius = 0.0;            ///< of the disc that was planned for, metres
+  double zmin = 0.0, zmax = 0.0;  ///< heights of its band
+  std::int32_t failed_leg = -1;
+  std::optional<Eigen::Vector2d> nearest;  ///< what can be reached nearest to a goal that cannot
+  std::vector<std::string> zones;          ///< no-go zones near it
 };
 
 /// What is known of one agent; published by merge for people and headsets.

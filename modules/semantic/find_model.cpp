@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "semantic/room_planes.hpp"
+#include "semantic/solid_voxels.hpp"
 
 namespace concord {
 namespace {
@@ -110,12 +111,60 @@ FoundModel judged(const std::vector<Eigen::Vector3d>& p_model, const BrickMap& m
   return out;
 }
 
+/// What a model takes up, for the question whether things that are seen belong to it.
+struct ModelBody {
+  Eigen::AlignedBox3d box;  ///< metres, model's axes, with a margin of kBeyond voxels
+  BrickMasks near;          ///< voxels of the model's own lattice that are in it or at the face of one that is
+};
+
+Result<ModelBody> body_of(const TriangleMesh& mesh, double scale, const std::vector<Eigen::Vector3d>& p_model,
+                          double resolution) {
+  const auto filled = voxelize(mesh, {Transform::Identity(), scale}, resolution, Fill::kSolid);
+  if (!filled) return tl::unexpected(filled.error());
+  ModelBody body;
+  BrickMasks all = filled->surface;
+  all.insert(filled->interior);
+  for (const VoxelIndex v : all.voxels()) {
+    for (int d = -1; d <= 1; ++d) {
+      body.near.insert({v.x + d, v.y, v.z});
+      body.near.insert({v.x, v.y + d, v.z});
+      body.near.insert({v.x, v.y, v.z + d});
+    }
+  }
+  for (const Eigen::Vector3d& p : p_model) body.box.extend(p);
+  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(kBeyond * resolution);
+  body.box = {body.box.min() - margin, body.box.max() + margin};
+  return body;
+}
+
+/// Of the furniture around a placed model, the share that is it: a box about as large as a pump has its corners where
+/// the pump has nothing.
+double explained(const ModelBody& body, const BrickMasks& furniture, double resolution, const Transform& T_map_model) {
+  const Eigen::AlignedBox3d box = body.box.transformed(Eigen::Affine3d(T_map_model.matrix()));
+  const VoxelIndex low = voxel_of(box.min(), resolution), high = voxel_of(box.max(), resolution);
+  const Transform T_model_map = T_map_model.inverse();
+  std::size_t mine = 0, others = 0;
+  for (std::int32_t z = low.z; z <= high.z; ++z) {
+    for (std::int32_t y = low.y; y <= high.y; ++y) {
+      for (std::int32_t x = low.x; x <= high.x; ++x) {
+        if (!furniture.contains({x, y, z})) continue;
+        const Eigen::Vector3d p = T_model_map * centre_of({x, y, z}, resolution);
+        if (!body.box.contains(p)) continue;
+        ++(body.near.contains(voxel_of(p, resolution)) ? mine : others);
+      }
+    }
+  }
+  return mine > 0 ? static_cast<double>(mine) / static_cast<double>(mine + others) : 0.0;
+}
+
 }  // namespace
 
 Result<std::vector<FoundModel>> find_model(const TriangleMesh& mesh, double scale, const BrickMap& map,
                                            double resolution, const FindOptions& options) {
   const auto p_model = surface_points(mesh, scale, resolution);
   if (!p_model) return tl::unexpected(p_model.error());
+  const auto body = body_of(mesh, scale, *p_model, resolution);
+  if (!body) return tl::unexpected(body.error());
   const BrickMasks occupied = occupied_of(map);
   BrickMasks furniture = occupied;
   furniture.erase(find_room_planes(occupied, resolution).voxels);
@@ -151,7 +200,10 @@ Result<std::vector<FoundModel>> find_model(const TriangleMesh& mesh, double scal
   for (const Candidate& one : elected(std::move(candidates))) {
     Transform T = turned(one.yaw);
     T.pretranslate(centre_of(one.at, resolution));
-    const FoundModel model = judged(few, map, resolution, fit_object(few, occupied, resolution, T, kNear).T_map_model);
+    FoundModel model = judged(few, map, resolution, fit_object(few, occupied, resolution, T, kNear).T_map_model);
+    model.explained = explained(*body, furniture, resolution, model.T_map_model);
+    model.score *= model.explained;
+    if (getenv("FM")) printf("%f %f %f  %f %f score %f\n",model.T_map_model.translation().x(),model.T_map_model.translation().y(),model.T_map_model.translation().z(),model.matched,model.explained,model.score);
     if (model.score >= options.min_score) found.push_back(model);
   }
   std::ranges::stable_sort(

@@ -11,10 +11,12 @@ namespace concord {
 /// A place where a model seems to be.
 struct FoundModel {
   Transform T_map_model = Transform::Identity();
-  double score =
-      0;  ///< 0 to 1: of its surface that the map speaks of, the share that is occupied; less if that is little
-  double matched = 0;  ///< share of its surface in an occupied voxel or at the face of one
-  double free = 0;     ///< share of its surface that lies amidst what was seen to be free
+  /// 0 to 1: of its surface that the map speaks of, the share that is occupied (less if that is little), times
+  /// `explained`
+  double score = 0;
+  double matched = 0;    ///< share of its surface in an occupied voxel or at the face of one
+  double free = 0;       ///< share of its surface that lies amidst what was seen to be free
+  double explained = 0;  ///< of what is occupied within kBeyond of the box around it, the share that is in or at it
 };
 
 struct FindOptions {
@@ -40,6 +42,7 @@ inline constexpr std::size_t kCandidates = 120;
 inline constexpr std::int64_t kMaxFindCells = 150'000'000;
 inline constexpr double kNear = 0.2;  ///< metres: half of what one direction is from the next, at the end of a metre
 inline constexpr std::size_t kFitPoints = 500;
+inline constexpr double kBeyond = 2.0;  ///< voxels
 inline constexpr double kEnoughSeen = 0.8;  ///< of the surface must be occupied for a full score
 
 }  // namespace concord

@@ -21,6 +21,15 @@ class BitLines {
   [[nodiscard]] std::uint64_t* line(int i) { return bits_.data() + static_cast<std::size_t>(i) * words_; }
   [[nodiscard]] const std::uint64_t* line(int i) const { return bits_.data() + static_cast<std::size_t>(i) * words_; }
 
+  /// The 64 bits from `bit` on; zeros beyond the line.
+  [[nodiscard]] std::uint64_t word_from(int i, int bit) const {
+    const std::uint64_t* words = line(i);
+    const int w = bit >> 6;
+    const int shift = bit & 63;
+    std::uint64_t word = words[w] >> shift;
+    if (shift != 0 && w + 1 < words_) word |= words[w + 1] << (64 - shift);
+    return word;
+  }
   [[nodiscard]] bool test(int i, int bit) const { return (line(i)[bit >> 6] >> (bit & 63) & 1) != 0; }
   void assign(int i, int bit, bool value) {
     std::uint64_t& word = line(i)[bit >> 6];

@@ -19,6 +19,7 @@ struct CellHash {
 /// The cells from `low` to `high`, both in it: where something changed.
 struct Window {
   Cell low, high;
+  bool operator==(const Window&) const = default;
 };
 
 }  // namespace concord

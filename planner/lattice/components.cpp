@@ -24,17 +24,6 @@ void join(Parents& parent, Index a, Index b) {
 /// The first cells of the runs of ones.
 std::uint64_t starts_of(std::uint64_t row) { return row & ~(row << 1); }
 
-/// The 64 bits of a line from cell `x` on; the line has a border of one.
-std::uint64_t word_at(const BitLines& lines, int line, int x) {
-  const std::uint64_t* words = lines.line(line);
-  const int bit = x + 1;
-  const int w = bit >> 6;
-  const int shift = bit & 63;
-  std::uint64_t word = words[w] >> shift;
-  if (shift != 0 && w + 1 < lines.words()) word |= words[w + 1] << (64 - shift);
-  return word;
-}
-
 }  // namespace
 
 std::uint16_t Components::Tile::part_at(int x, int y) const {
@@ -75,7 +64,7 @@ void Components::join_runs(int tx, int ty) {
   std::uint64_t below = 0;
   std::size_t run_below = 0;
   for (int y = 0; y < kTile; ++y) {
-    const std::uint64_t row = y < height ? word_at(grid_.rows(), ty * kTile + y + 1, tx * kTile) : 0;
+    const std::uint64_t row = y < height ? grid_.rows().word_from(ty * kTile + y + 1, tx * kTile + 1) : 0;
     tile.rows[y] = row;
     tile.first_run[y] = static_cast<std::uint16_t>(parent.size());
     const std::size_t first_below = run_below;
@@ -115,8 +104,8 @@ void Components::link(int tx, int ty) {
     const Tile& other = tile_at(tx + 1, ty);
     const int x = (tx + 1) * kTile;  // of the column right of the border, and with its own border the line left of it
     const int height = std::min(kTile, grid_.height() - ty * kTile);
-    const std::uint64_t both = word_at(grid_.columns(), x, ty * kTile) & word_at(grid_.columns(), x + 1, ty * kTile) &
-                               ~std::uint64_t{0} >> (64 - height);
+    const std::uint64_t both = grid_.columns().word_from(x, ty * kTile + 1) &
+                               grid_.columns().word_from(x + 1, ty * kTile + 1) & ~std::uint64_t{0} >> (64 - height);
     for (std::uint64_t met = starts_of(both); met != 0; met &= met - 1) {
       const int y = std::countr_zero(met);
       add(tile.right, {tile.part_at(kTile - 1, y), other.part_at(0, y)});

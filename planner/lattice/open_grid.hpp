@@ -25,6 +25,8 @@ class OpenGrid {
   }
   [[nodiscard]] bool is_open(Cell cell) const { return holds(cell) && rows_.test(cell.y + 1, cell.x + 1); }
 
+  /// The 64 cells from `cell` on along x; blocked ones beyond the grid. @pre holds(cell).
+  [[nodiscard]] std::uint64_t row_from(Cell cell) const { return rows_.word_from(cell.y + 1, cell.x + 1); }
   /// @pre holds(cell).
   void set(Cell cell, bool open) {
     rows_.assign(cell.y + 1, cell.x + 1, open);

@@ -12,16 +12,17 @@ double between(Cell a, Cell b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
 }  // namespace
 
-/// In the same unit as the steps: the mean factor of the cells that it touches times its length.
+/// In the same unit as the steps, and along a line that these can follow the same: the mean factor of the cells that it
+/// touches, where the first and the last count half, times its length.
 std::int64_t ClearanceSearch::line_cost(Cell from, Cell to) const {
-  std::int64_t factors = 0;
-  std::int64_t cells = 0;
+  std::int64_t factors = -(factor_at(from) + factor_at(to));
+  std::int64_t cells = -1;
   LineOfCells(from, to).for_each_cell([&](Cell cell) {
-    factors += factor_at(cell);
+    factors += 2 * factor_at(cell);
     ++cells;
   });
   return std::llround(between(from, to) * static_cast<double>(kStraightStep * factors) /
-                      static_cast<double>(cells * ClearanceCost::kUnit));
+                      static_cast<double>(2 * cells * ClearanceCost::kUnit));
 }
 
 int ClearanceSearch::least_on_line(Cell from, Cell to) const {
@@ -38,10 +39,11 @@ ClearPath ClearanceSearch::shorten(std::vector<Cell> cells) const {
   const auto is_as_good = [&](std::size_t from, std::size_t to) {
     if (to == from + 1) return true;
     if (!sees(grid_, cells[from], cells[to])) return false;
-    if (line_cost(cells[from], cells[to]) > sums[to] - sums[from]) return false;
+    // Each step's cost is rounded down by less than one.
+    if (line_cost(cells[from], cells[to]) > sums[to] - sums[from] + static_cast<std::int64_t>(to - from)) return false;
     int least = field_.reach() * field_.reach();
     for (std::size_t i = from; i <= to; ++i) least = std::min<int>(least, field_.squared(cells[i]));
-    return least_on_line(cells[from], cells[to]) >= least;
+    return least_on_line(cells[from], cells[to]) >= least && (!also_ || also_(cells[from], cells[to]));
   };
   ClearPath path;
   path.cost = sums[last];

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "planner/search/jump_graph.hpp"
 
@@ -46,10 +47,12 @@ ClearanceCost::ClearanceCost(int reach) {
   }
 }
 
-ClearanceSearch::ClearanceSearch(const OpenGrid& grid, const DistanceField& field)
-    : grid_(grid), field_(field), costs_(field.reach()) {
-  states_.resize(static_cast<std::size_t>(grid.width()) * grid.height());
-}
+ClearanceSearch::ClearanceSearch(const OpenGrid& grid, const DistanceField& field, SightRule also)
+    : grid_(grid),
+      field_(field),
+      also_(std::move(also)),
+      costs_(field.reach()),
+      states_(static_cast<std::size_t>(grid.width()) * static_cast<std::size_t>(grid.height())) {}
 
 std::int64_t ClearanceSearch::at_least(Cell from, Cell to) {
   const std::int64_t dx = std::abs(std::int64_t{from.x} - to.x);
@@ -69,7 +72,7 @@ Cell ClearanceSearch::cell_at(std::uint32_t index) const {
 
 void ClearanceSearch::begin(Cell goal) {
   if (++query_ == 0) {
-    states_.assign(states_.size(), {});
+    states_.clear();
     query_ = 1;
   }
   for (std::vector<std::uint32_t>& bucket : buckets_) bucket.clear();

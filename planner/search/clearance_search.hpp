@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "planner/lattice/distance_field.hpp"
+#include "planner/search/sight_rule.hpp"
+#include "planner/search/zeroed.hpp"
 
 namespace concord {
 
@@ -42,8 +44,9 @@ class ClearanceSearch {
   /// What steps between cells far from everything cost: as 1 to the square root of 2, to a ten-thousandth.
   static constexpr std::int64_t kStraightStep = 128, kDiagonalStep = 181;
 
-  /// Both must outlive this and be up to date when it is asked.
-  ClearanceSearch(const OpenGrid& grid, const DistanceField& field);
+  /// Both must outlive this and be up to date when it is asked. A straight line must be seen over the grid and
+  /// `also`, if there is such a rule.
+  ClearanceSearch(const OpenGrid& grid, const DistanceField& field, SightRule also = {});
 
   /// What a search may find and take.
   struct Limits {
@@ -58,6 +61,9 @@ class ClearanceSearch {
   /// What `find` makes of the cells that it found. @pre they are open, each a neighbour of the one before.
   [[nodiscard]] ClearPath shorten(std::vector<Cell> cells) const;
 
+  /// Cells that the last search looked at.
+  [[nodiscard]] std::int64_t expanded() const { return expanded_; }
+
   /// What a path between two cells costs at least.
   [[nodiscard]] static std::int64_t at_least(Cell from, Cell to);
 
@@ -67,10 +73,10 @@ class ClearanceSearch {
  private:
   static constexpr int kBuckets = 1024;  ///< more than a step and what it leads away from the goal can cost
   struct State {
-    std::int64_t cost = 0;
-    std::uint32_t query = 0;
-    std::uint8_t came_by = 0;  ///< direction
-    bool is_done = false;
+    std::int64_t cost;
+    std::uint32_t query;
+    std::uint8_t came_by;  ///< direction
+    bool is_done;
   };
 
   void begin(Cell goal);
@@ -83,10 +89,12 @@ class ClearanceSearch {
   [[nodiscard]] std::int64_t step(Cell from, Cell to) const;
   [[nodiscard]] std::int64_t line_cost(Cell from, Cell to) const;
   [[nodiscard]] int least_on_line(Cell from, Cell to) const;
+
   const OpenGrid& grid_;
   const DistanceField& field_;
+  SightRule also_;
   ClearanceCost costs_;
-  std::vector<State> states_;
+  Zeroed<State> states_;
   std::uint32_t query_ = 0;
   std::array<std::vector<std::uint32_t>, kBuckets> buckets_;
   std::int64_t least_ = 0;    ///< total cost of the present bucket

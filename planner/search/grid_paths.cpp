@@ -23,7 +23,21 @@ TautPath pulled(const OpenGrid& grid, const OctilePath& path) {
 
 }  // namespace
 
-GridPaths::GridPaths(OpenGrid grid, int reach) : grid_(std::move(grid)), reach_(reach) {}
+std::vector<Cell> cells_of(const std::vector<Cell>& turns) {
+  std::vector<Cell> cells{turns.front()};
+  for (const Cell turn : turns) {
+    while (cells.back() != turn) {
+      const Cell at = cells.back();
+      cells.push_back({at.x + (turn.x > at.x) - (turn.x < at.x), at.y + (turn.y > at.y) - (turn.y < at.y)});
+    }
+  }
+  return cells;
+}
+
+GridPaths::GridPaths(OpenGrid grid, int reach, SightRule also)
+    : grid_(std::move(grid)), reach_(reach), also_(std::move(also)) {}
+
+bool GridPaths::sees(Cell a, Cell b) const { return concord::sees(grid_, a, b) && (!also_ || also_(a, b)); }
 
 void GridPaths::prepare_components() {
   if (!components_) components_ = std::make_unique<Components>(grid_);
@@ -46,7 +60,7 @@ void GridPaths::prepare_clear() {
   prepare_components();
   if (clearance_) return;
   field_ = std::make_unique<DistanceField>(grid_, reach_);
-  clearance_ = std::make_unique<ClearanceSearch>(grid_, *field_);
+  clearance_ = std::make_unique<ClearanceSearch>(grid_, *field_, also_);
 }
 
 bool GridPaths::connected(Cell a, Cell b) {
@@ -72,6 +86,13 @@ std::optional<ClearPath> GridPaths::clear(Cell start, Cell goal, const Clearance
   if (!connected(start, goal)) return std::nullopt;
   prepare_clear();
   return clearance_->find(start, goal, limits);
+}
+
+std::optional<ClearPath> GridPaths::clear_or_fast(Cell start, Cell goal, std::int64_t most_expanded) {
+  if (auto path = clear(start, goal, {.expanded = most_expanded})) return path;
+  const auto shortest = fast(start, goal);
+  if (!shortest) return std::nullopt;
+  return clearance_->shorten(cells_of(shortest->turns));
 }
 
 std::vector<bool> GridPaths::cells(const Window& window) const {

@@ -44,15 +44,34 @@ KeptPath::Outcome KeptPath::take(std::optional<ClearPath> found) {
 KeptPath::Outcome KeptPath::plan(Cell start, Cell goal) {
   start_ = start;
   goal_ = goal;
-  return take(paths_.clear(start, goal));
+  return take(paths_->clear_or_fast(start, goal, most_expanded_));
+}
+
+void KeptPath::move_to(GridPaths& paths, Cell shift) {
+  paths_ = &paths;
+  const auto move = [&](Cell& cell) { cell = {cell.x + shift.x, cell.y + shift.y}; };
+  move(start_);
+  move(goal_);
+  if (!path_) return;
+  std::for_each(path_->cells.begin(), path_->cells.end(), move);
+  std::for_each(path_->turns.begin(), path_->turns.end(), move);
+}
+
+void KeptPath::begin_at(std::size_t first) {
+  if (first == 0) return;
+  std::vector<Cell> cells(path_->cells.begin() + static_cast<std::ptrdiff_t>(first), path_->cells.end());
+  start_ = cells.front();
+  const std::int64_t before = path_->cost;
+  path_ = paths_->clearance().shorten(std::move(cells));
+  cost_ -= std::min(cost_, before - path_->cost);
 }
 
 KeptPath::Outcome KeptPath::follow(const Window& window, bool opened) {
   if (!path_) return opened ? plan(start_, goal_) : Outcome::kUnreachable;
-  if (!paths_.connected(start_, goal_)) return take(std::nullopt);
+  if (!paths_->connected(start_, goal_)) return take(std::nullopt);
   const std::optional<Stretch> stretch = near(window);
   if (!stretch || is_open(window)) {
-    if (stretch) path_->cost = paths_.clearance().cost(path_->cells);
+    if (stretch) path_->cost = paths_->clearance().cost(path_->cells);
     if (path_->cost <= with_share(cost_)) {
       may_improve_ = may_improve_ || (opened && could_save(window));
       return Outcome::kKept;
@@ -67,7 +86,7 @@ bool KeptPath::improve() {
   if (!path_ || !may_improve_) return false;
   may_improve_ = false;
   const auto enough = static_cast<std::int64_t>(static_cast<double>(path_->cost) / (1 + kShare));
-  auto other = paths_.clear(start_, goal_, {.cost = enough});
+  auto other = paths_->clear(start_, goal_, {.cost = enough, .expanded = most_expanded_});
   if (!other) return false;
   (void)take(std::move(other));
   return true;
@@ -75,7 +94,7 @@ bool KeptPath::improve() {
 
 /// The cells whose cost the window may have changed.
 std::optional<KeptPath::Stretch> KeptPath::near(const Window& window) const {
-  const Window reach = grown(window, paths_.field().reach());
+  const Window reach = grown(window, paths_->field().reach());
   const std::vector<Cell>& cells = path_->cells;
   const auto is_near = [&](Cell cell) { return holds(reach, cell); };
   const auto first = std::find_if(cells.begin(), cells.end(), is_near);
@@ -86,7 +105,7 @@ std::optional<KeptPath::Stretch> KeptPath::near(const Window& window) const {
       const Cell b = path_->turns[i];
       const bool apart = std::max(a.x, b.x) < window.low.x || std::min(a.x, b.x) > window.high.x ||
                          std::max(a.y, b.y) < window.low.y || std::min(a.y, b.y) > window.high.y;
-      if (!apart && !sees(paths_.grid(), a, b)) return Stretch{0, cells.size() - 1};
+      if (!apart && !paths_->sees(a, b)) return Stretch{0, cells.size() - 1};
     }
     return std::nullopt;
   }
@@ -96,11 +115,11 @@ std::optional<KeptPath::Stretch> KeptPath::near(const Window& window) const {
 
 /// Whether the lines and the cells that come to the window are still open.
 bool KeptPath::is_open(const Window& window) const {
-  const OpenGrid& grid = paths_.grid();
+  const OpenGrid& grid = paths_->grid();
   const auto blocked = [&](Cell cell) { return holds(window, cell) && !grid.is_open(cell); };
   if (std::any_of(path_->cells.begin(), path_->cells.end(), blocked)) return false;
   for (std::size_t i = 1; i < path_->turns.size(); ++i) {
-    if (!sees(grid, path_->turns[i - 1], path_->turns[i])) return false;
+    if (!paths_->sees(path_->turns[i - 1], path_->turns[i])) return false;
   }
   // A step over a corner that was filled is not in any cell.
   for (std::size_t i = 1; i < path_->cells.size(); ++i) {
@@ -112,7 +131,7 @@ bool KeptPath::is_open(const Window& window) const {
 /// Whether a path by way of the window could cost so much less that it is worth to change. Only there did anything
 /// become cheaper.
 bool KeptPath::could_save(const Window& window) const {
-  const Window reach = grown(window, paths_.field().reach());
+  const Window reach = grown(window, paths_->field().reach());
   const std::int64_t least = ClearanceSearch::at_least(start_, nearest(reach, start_)) +
                              ClearanceSearch::at_least(nearest(reach, goal_), goal_);
   return with_share(least) < path_->cost;
@@ -124,12 +143,12 @@ bool KeptPath::repair(const Stretch& stretch) {
   const std::size_t room = stretch.last - stretch.first + 1;
   const std::size_t from = stretch.first > room ? stretch.first - room : 0;
   const std::size_t to = std::min(stretch.last + room, cells.size() - 1);
-  const ClearanceSearch& search = paths_.clearance();
+  const ClearanceSearch& search = paths_->clearance();
   std::vector<Cell> whole(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(from) + 1);
   const std::vector<Cell> after(cells.begin() + static_cast<std::ptrdiff_t>(to), cells.end());
   const std::int64_t left = with_share(cost_) - search.cost(whole) - search.cost(after);
   const auto count = static_cast<std::int64_t>(to - from + 1);
-  const auto between = paths_.clear(cells[from], cells[to], {left + 1, std::min(kPerCell * count, expanded_ / kPart)});
+  const auto between = paths_->clear(cells[from], cells[to], {left + 1, std::min(kPerCell * count, expanded_ / kPart)});
   if (!between) return false;
   whole.insert(whole.end(), between->cells.begin() + 1, between->cells.end());
   whole.insert(whole.end(), after.begin() + 1, after.end());

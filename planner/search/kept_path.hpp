@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "planner/search/grid_paths.hpp"
@@ -22,8 +24,16 @@ class KeptPath {
     kUnreachable,  ///< there is no way any more
   };
 
-  /// `paths` must outlive this.
-  explicit KeptPath(GridPaths& paths) : paths_(paths) {}
+  static constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max();
+
+  /// `paths` must outlive this. A search from scratch looks at so many cells before it takes the fast path.
+  explicit KeptPath(GridPaths& paths, std::int64_t most_expanded = kNoLimit)
+      : paths_(&paths), most_expanded_(most_expanded) {}
+
+  /// The same cells are now in `paths`, by `shift` from where they were.
+  void move_to(GridPaths& paths, Cell shift);
+  /// The path begins at its cell `first` from now on. @pre there is a path, and that cell of it.
+  void begin_at(std::size_t first);
 
   /// From scratch.
   Outcome plan(Cell start, Cell goal);
@@ -33,6 +43,8 @@ class KeptPath {
   /// Looks for a path that costs less than this one by more than the share, if any cell that was opened since can make
   /// one. Takes as long as a search from scratch at most. Returns whether it took one.
   bool improve();
+  /// Whether `improve` would look.
+  [[nodiscard]] bool may_improve() const { return path_ && may_improve_; }
   [[nodiscard]] const std::optional<ClearPath>& path() const { return path_; }
 
  private:
@@ -47,7 +59,8 @@ class KeptPath {
   [[nodiscard]] bool repair(const Stretch& stretch);
   Outcome take(std::optional<ClearPath> found);
 
-  GridPaths& paths_;
+  GridPaths* paths_;
+  std::int64_t most_expanded_;
   Cell start_, goal_;
   std::optional<ClearPath> path_;
   std::int64_t cost_ = 0;      ///< of the path that was last found from scratch, then

@@ -53,6 +53,7 @@ const char* channel_of(const std::string& type) {
                                                                {"map_request_t", "in/map_request"},
                                                                {"map_list_t", "out/map_list"},
                                                                {"path_request_t", "in/path_request"},
+                                                               {"path_watch_t", "in/path_watch"},
                                                                {"path_t", "out/path/robot1"},
                                                                {"answer_t", "out/answer"},
                                                                {"agents_t", "out/agents"},

@@ -109,7 +109,7 @@ std::vector<LogEvent> record_session() {
   wait(0.5);
   robot1.change();
   wait(0.5);
-  const Bytes ask = encode(PathRequest{"path", "robot1", std::nullopt, {2.6, 4.2}, 0.1, true}, air.now());
+  const Bytes ask = encode(PathRequest{"path", "robot1", std::nullopt, {2.6, 4.2}, 0.1, true, {}}, air.now());
   air.publish("in/path_request", ask);
   wait(0.2);
   air.publish("in/edit", encode(pane_of_glass(air.now())));

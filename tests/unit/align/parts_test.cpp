@@ -115,14 +115,14 @@ RC_GTEST_PROP(SurfaceLevel, FindsTheNearestMeanThatLiesWithinHalfACell, ()) {
   }
 }
 
-TEST(FreeSpace, OfVoxelsIsWhatTheyKnow) {
+TEST(ObservedFreeSpace, OfVoxelsIsWhatTheyKnow) {
   std::map<BrickIndex, DenseBrick> bricks;
   for (int i = 0; i < 16; ++i) {
     for (int j = 0; j < 4; ++j) {
       for (int k = -4; k < 0; ++k) mark(bricks, {i, j, k}, i == 9 ? kOccupied : kFree);
     }
   }
-  const FreeSpace free = FreeSpace::known(map_of(bricks), 0.1);
+  const ObservedFreeSpace free = ObservedFreeSpace::known(map_of(bricks), 0.1);
   EXPECT_TRUE(free.contains({0.35, 0.15, -0.15}));
   EXPECT_TRUE(free.contains({1.25, 0.15, -0.35}));
   EXPECT_FALSE(free.contains({0.85, 0.15, -0.15}));  // shares its block with what is occupied
@@ -130,7 +130,7 @@ TEST(FreeSpace, OfVoxelsIsWhatTheyKnow) {
   EXPECT_FALSE(free.contains({0.35, 0.15, 0.15}));
 }
 
-TEST(FreeSpace, OfACloudLiesBetweenSurfacesThatFaceEachOther) {
+TEST(ObservedFreeSpace, OfACloudLiesBetweenSurfacesThatFaceEachOther) {
   const AlignMap map = cloud_map(room());
   EXPECT_TRUE(map.free.contains({0.0, -1.4, 1.2}));   // in the room
   EXPECT_FALSE(map.free.contains({0.0, 3.0, 1.2}));   // behind a wall
@@ -138,7 +138,7 @@ TEST(FreeSpace, OfACloudLiesBetweenSurfacesThatFaceEachOther) {
   EXPECT_FALSE(map.free.contains({-3.0, 0.0, 1.2}));  // in a wall
 }
 
-TEST(FreeSpace, TurnsNormalsIntoTheRoom) {
+TEST(ObservedFreeSpace, TurnsNormalsIntoTheRoom) {
   const AlignMap map = cloud_map(room());
   std::size_t into = 0;
   std::size_t out_of = 0;

@@ -57,6 +57,41 @@ Zone zone(const std::string& name, Volume volume) {
   return {name, Zone::Kind::kAllowContact, std::move(volume), some_transform(), "Zoë", kTime, 5};
 }
 
+Path no_path() {
+  Path path;
+  path.id = "r-6";
+  path.robot = "robot1";
+  path.status = "NO_VALID_PATH";
+  path.message = "none";
+  path.map_revision = 77;
+  path.plan_number = 2;
+  path.active = true;
+  path.utime = kTime;
+  return path;
+}
+
+Path some_path() {
+  Path path = no_path();
+  path.status = "OK";
+  path.message = "a path";
+  path.points = {{1, 2, 0}, {3, 4, 0}};
+  path.length = 2.8;
+  path.least_clearance = 0.5;
+  path.details = {{0.8, 0.5, 0, 0.0}, {0.8, 0.6, 1, 5.6}};
+  path.path_id = 1LL << 40;
+  path.superseded = 17;
+  path.edit_id = "e-1";
+  path.frame_agent = "headset1";
+  path.frame_id = "room";
+  path.radius = 0.3;
+  path.zmin = 0.1;
+  path.zmax = 1.8;
+  path.failed_leg = 2;
+  path.nearest = Eigen::Vector2d(3, 5);
+  path.zones = {"Schweißzelle 2", "wet floor"};
+  return path;
+}
+
 AlignResult align_result() {
   Alignment evidence;
   evidence.reason = AlignReason::kDegenerate;
@@ -159,8 +194,12 @@ const std::vector<MessageSample>& message_samples() {
       sample("map_request_t", MapRequest{"r-4", MapRequest::Op::kLoad, "hall", "concord", false, "robot1"}),
       sample("map_request_t", MapRequest{"r-4", MapRequest::Op::kSave, "hall", "bt", true, ""}),
       sample("map_list_t", MapList{"r-5", {{"a.bt", 100}, {"b.ot", 1LL << 40}}}),
-      sample("path_request_t", PathRequest{"r-6", "robot1", Eigen::Vector2d(1, 2), {3, 4}, 0.4, true}),
-      sample("path_t", Path{"r-6", "robot1", "OK", "a path", {{1, 2, 0}, {3, 4, 0}}, 2.8, 0.5, 77, 2, true, kTime}),
+      sample("path_request_t", PathRequest{"r-6", "robot1", Eigen::Vector2d(1, 2), {3, 4}, 0.4, true, {{2, 2}}}),
+      sample("path_request_t",
+             PathRequest{"r-7", "robot1", std::nullopt, {0, 0}, 0, false, {}, PathRequest::Op::kCancel}),
+      sample("path_watch_t", PathWatch{"r-8", "", "headset1"}),
+      sample("path_t", some_path()),
+      sample("path_t", no_path()),
       sample("align_request_t", AlignRequest{"a-1", "Zoë", "robot1", "odom", "robot2", "", some_transform(), kTime}),
       sample("align_request_t", AlignRequest{"a-2", "", "robot1", "", "", "", std::nullopt, kTime}),
       sample("align_decision_t", AlignDecision{"d-1", "Zoë", AlignDecision::Op::kAccept, "a-1", kTime}),

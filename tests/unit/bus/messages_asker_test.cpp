@@ -46,7 +46,7 @@ TEST(MessagesAsker, ATextOverItsLimitIsRefusedToItsAsker) {
   refused(AgentRequest{"r", long_text, AgentRequest::Op::kReset});
   refused(DownsampleRequest{"r", long_text, 1});
   refused(MapRequest{"r", MapRequest::Op::kSave, long_text, "bt", false, ""});
-  refused(PathRequest{"r", long_text, {}, {1, 2}, 0, false});
+  refused(PathRequest{"r", long_text, {}, {1, 2}, 0, false, {}});
 }
 
 TEST(MessagesAsker, WhatIsCutOffIsRefusedToItsAskerOnceTheIdIsThere) {

@@ -109,7 +109,16 @@ TEST(Tables, TheStatusNamesWhoIsMissing) {
 
 TEST(Tables, OnlyPathsThatAreKeptAreListed) {
   KeptPaths kept;
-  Path path{"p1", "robot1", "OK", "", {{0, 0, 0}, {3, 4, 0}}, 5, 0.5, 1, 0, true, 1};
+  Path path;
+  path.id = "p1";
+  path.robot = "robot1";
+  path.status = "OK";
+  path.points = {{0, 0, 0}, {3, 4, 0}};
+  path.length = 5;
+  path.least_clearance = 0.5;
+  path.map_revision = 1;
+  path.active = true;
+  path.utime = 1;
   take(kept, path);
   Path question = path;
   question.id = "p2";

@@ -140,7 +140,7 @@ TEST(MapArchive, BytesAreAsDocumented) {
                        0,    0,   0,   0,   0,   0,   0,   0,                                              //
                        'E',  'N', 'D', '.', 1,   0,   0,   0,   8,    0,    0,    0,    0, 0, 0,    0,     //
                        0,    0,   0,   0,   0,   0,   0,   0,   2,    0,    0,    0,    0, 0, 0,    0};
-  Bytes file = write({0.5, {}, {}});
+  Bytes file = write({0.5, {}, {}, {}});
   ASSERT_EQ(file.size(), expected.size());
   for (const std::size_t checksum : {32, 64, 88}) std::fill_n(file.begin() + static_cast<int>(checksum), 8, 0);
   EXPECT_EQ(file, expected);
@@ -357,7 +357,7 @@ TEST(MapArchive, TheWriterRefusesWhatCouldNotBeRead) {
 
 TEST(MapArchive, LoadedAgentsHaveAnIncarnationOfTheirFileAndRequest) {
   const Bytes file = write(small_archive());
-  const Bytes other = write({0.5, {}, {}});
+  const Bytes other = write({0.5, {}, {}, {}});
   const std::int64_t incarnation = loaded_incarnation(file, "q1");
   EXPECT_GE(incarnation, kLoadedIncarnation);
   EXPECT_EQ(loaded_incarnation(file, "q1"), incarnation);

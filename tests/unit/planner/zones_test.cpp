@@ -31,39 +31,39 @@ const Rows kHall(20, std::string(30, '.'));
 TEST(PlanWithZones, GoesRoundANoGoZoneAtItsRadius) {
   const Grid grid = test::sketch(kHall);
   const ZoneLayer zones = layer_of({no_go("press", {12.2, 4.2}, {15.8, 12.8})});
-  const PlanResult round = plan(grid, {4, 8}, {25, 8}, 1.3, zones);
+  const PlanResult round = plan({grid, zones}, {4, 8}, {25, 8}, 1.3);
   ASSERT_EQ(round.reason, Reason::kOk) << round.message;
   EXPECT_GT(round.length, 22);
   EXPECT_GE(round.least_clearance, 1.3 - 1e-5);
-  EXPECT_LT(round.least_clearance, 2);
-  EXPECT_TRUE(is_clear(grid, round.points, 1.3, zones));
-  EXPECT_FALSE(is_clear(grid, std::vector<Eigen::Vector2d>{{4, 8}, {25, 8}}, 1.3, zones));
+  EXPECT_LT(round.least_clearance, 3);
+  EXPECT_TRUE(is_clear({grid, zones}, round.points, 1.3));
+  EXPECT_FALSE(is_clear({grid, zones}, std::vector<Eigen::Vector2d>{{4, 8}, {25, 8}}, 1.3));
   EXPECT_TRUE(is_clear(grid, std::vector<Eigen::Vector2d>{{4, 8}, {25, 8}}, 1.3));
 }
 
 TEST(PlanWithZones, SaysWhichZoneIsInTheWay) {
   const Grid grid = test::sketch(kHall);
   const ZoneLayer zones = layer_of({no_go("press", {12.2, -5}, {15.8, 40}), no_go("aisle", {100, 100}, {110, 110})});
-  PlanResult result = plan(grid, {4, 8}, {13, 8}, 0.5, zones);
+  PlanResult result = plan({grid, zones}, {4, 8}, {13, 8}, 0.5);
   EXPECT_EQ(result.reason, Reason::kGoalInNoGo);
   EXPECT_NE(result.message.find("'press'"), std::string::npos) << result.message;
-  result = plan(grid, {13, 8}, {4, 8}, 0.5, zones);
-  EXPECT_EQ(result.reason, Reason::kStartInNoGo);
-  EXPECT_NE(result.message.find("'press'"), std::string::npos) << result.message;
-  result = plan(grid, {4, 8}, {11.8, 8}, 0.5, zones);
+  result = plan({grid, zones}, {13, 8}, {4, 8}, 0.5);
+  EXPECT_EQ(result.reason, Reason::kOk) << "a robot that stands in a zone may leave it";
+  EXPECT_TRUE(result.message.starts_with("it leaves the no-go zone 'press' first")) << result.message;
+  result = plan({grid, zones}, {4, 8}, {11.8, 8}, 0.5);
   EXPECT_EQ(result.reason, Reason::kGoalClearance);
   EXPECT_NE(result.message.find("'press'"), std::string::npos) << result.message;
-  result = plan(grid, {4, 8}, {25, 8}, 0.5, zones);
+  result = plan({grid, zones}, {4, 8}, {25, 8}, 0.5);
   EXPECT_EQ(result.reason, Reason::kNoValidPath);
   EXPECT_NE(result.message.find("'press'"), std::string::npos) << result.message;
   // A wall beside the zone: it is not the zone alone.
   Rows walled = kHall;
   for (std::string& row : walled) row[20] = '#';
-  result = plan(test::sketch(walled), {4, 8}, {25, 8}, 0.5, zones);
+  result = plan({test::sketch(walled), zones}, {4, 8}, {25, 8}, 0.5);
   EXPECT_EQ(result.reason, Reason::kNoValidPath);
   EXPECT_EQ(result.message.find("zone"), std::string::npos) << result.message;
   // Nor has a zone that the search never came near anything to do with it.
-  result = plan(test::sketch(walled), {4, 8}, {25, 8}, 0.5, layer_of({no_go("aisle", {100, 100}, {110, 110})}));
+  result = plan({test::sketch(walled), layer_of({no_go("aisle", {100, 100}, {110, 110})})}, {4, 8}, {25, 8}, 0.5);
   EXPECT_EQ(result.message.find("zone"), std::string::npos) << result.message;
 }
 
@@ -83,32 +83,32 @@ TEST(PlanWithZones, ContactLetsTheBodyOverNotTheCentre) {
   const Eigen::Vector2d right(11.5, 3.5);
   EXPECT_EQ(plan(grid, left, right, 0.8).reason, Reason::kNoValidPath);
   const ZoneLayer posts = layer_of({contact("posts", {7.1, 2.1}, {7.9, 4.9})});
-  const PlanResult through = plan(grid, left, right, 0.8, posts);
+  const PlanResult through = plan({grid, posts}, left, right, 0.8);
   ASSERT_EQ(through.reason, Reason::kOk) << through.message;
   EXPECT_NEAR(through.length, 8, 1e-9);
   EXPECT_NEAR(through.least_clearance, 0.5, 1e-9);  // said as it is
   // Contact with one post is not contact with the other.
-  EXPECT_EQ(plan(grid, left, right, 0.8, layer_of({contact("post", {7.1, 2.1}, {7.9, 2.9})})).reason,
+  EXPECT_EQ(plan({grid, layer_of({contact("post", {7.1, 2.1}, {7.9, 2.9})})}, left, right, 0.8).reason,
             Reason::kNoValidPath);
   // What is occupied or unknown stays so.
   for (const char c : {'#', ' '}) {
     Rows shut = kDoor;
     shut[3][7] = c;
-    EXPECT_EQ(plan(test::sketch(shut), left, right, 0.0, posts).reason, Reason::kNoValidPath);
-    EXPECT_EQ(plan(test::sketch(shut), left, {7.5, 3.5}, 0.0, posts).reason,
+    EXPECT_EQ(plan({test::sketch(shut), posts}, left, right, 0.0).reason,
+              c == '#' ? Reason::kNoValidPath : Reason::kBlockedByUnknown);
+    EXPECT_EQ(plan({test::sketch(shut), posts}, left, {7.5, 3.5}, 0.0).reason,
               c == '#' ? Reason::kGoalOccupied : Reason::kGoalUnknown);
   }
   // No-go outranks it.
-  EXPECT_EQ(plan(grid, left, right, 0.8,
-                 layer_of({contact("posts", {7.1, 2.1}, {7.9, 4.9}), no_go("post", {7.1, 2.1}, {7.9, 2.9})}))
-                .reason,
-            Reason::kNoValidPath);
+  const ZoneLayer outranked =
+      layer_of({contact("posts", {7.1, 2.1}, {7.9, 4.9}), no_go("post", {7.1, 2.1}, {7.9, 2.9})});
+  EXPECT_EQ(plan({grid, outranked}, left, right, 0.8).reason, Reason::kNoValidPath);
   const ZoneLayer both = layer_of({contact("all", {0, 0}, {15, 7}), no_go("door", {7.1, 3.1}, {7.9, 3.9})});
-  EXPECT_EQ(plan(grid, left, right, 0.0, both).reason, Reason::kNoValidPath);
-  EXPECT_EQ(plan(grid, left, {7.5, 3.5}, 0.0, both).reason, Reason::kGoalInNoGo);
-  EXPECT_EQ(plan(grid, left, {6.7, 3.5}, 0.8, both).reason, Reason::kGoalClearance);  // never relaxed
-  EXPECT_EQ(plan(grid, left, {1.2, 3.5}, 0.8, both).reason, Reason::kOk);             // against the wall
-  EXPECT_EQ(plan(grid, left, {1.0, 3.5}, 0.8, both).reason, Reason::kGoalClearance);  // not on its face
+  EXPECT_EQ(plan({grid, both}, left, right, 0.0).reason, Reason::kNoValidPath);
+  EXPECT_EQ(plan({grid, both}, left, {7.5, 3.5}, 0.0).reason, Reason::kGoalInNoGo);
+  EXPECT_EQ(plan({grid, both}, left, {6.7, 3.5}, 0.8).reason, Reason::kGoalClearance);  // never relaxed
+  EXPECT_EQ(plan({grid, both}, left, {1.2, 3.5}, 0.8).reason, Reason::kOk);             // against the wall
+  EXPECT_EQ(plan({grid, both}, left, {1.0, 3.5}, 0.8).reason, Reason::kGoalClearance);  // not on its face
 }
 
 /// What the rule says of a robot at `p`, found cell by cell with nothing of the planner's. All in cells.
@@ -158,7 +158,7 @@ TEST(PlanWithZones, OpenCellsAreTheRuleCellByCell) {
     const std::vector<Zone> zones = random_zones(random, 8);
     const ZoneLayer layer = layer_of(zones);
     const Oracle oracle(grid, zones);
-    FreeSpace space(grid, radius, layer);
+    FreeSpace space({grid, layer}, radius);
     FreeSpace without(grid, radius);
     for (std::int32_t y = -2; y < 32; ++y) {
       for (std::int32_t x = -2; x < 42; ++x) {
@@ -181,13 +181,13 @@ TEST(PlanWithZones, LinesOfSightAreTheValidators) {
     const Grid grid = test::sketch(test::strewn(random, 40, 30, 0.01, 0.003));
     const double radius = seed % 3 == 0 ? 0.0 : 0.25 * static_cast<double>(random() % 8);
     const ZoneLayer layer = layer_of(random_zones(random, 6));
-    FreeSpace space(grid, radius, layer);
+    FreeSpace space({grid, layer}, radius);
     const auto point = [&] {
       return Eigen::Vector2d(0.5 * static_cast<double>(random() % 80), 0.5 * static_cast<double>(random() % 60));
     };
     for (int i = 0; i < 60; ++i) {
       const std::array<Eigen::Vector2d, 2> line{point(), point()};
-      const bool clear = is_clear(grid, line, radius, layer);
+      const bool clear = is_clear({grid, layer}, line, radius);
       ASSERT_EQ(space.sees(line[0], line[1]), clear)
           << "seed " << seed << " r " << radius << " " << line[0].transpose() << " to " << line[1].transpose();
       seen += clear ? 1 : 0;
@@ -197,6 +197,8 @@ TEST(PlanWithZones, LinesOfSightAreTheValidators) {
   EXPECT_GT(seen, 400);
   EXPECT_GT(by_contact, 10);
 }
+
+bool leaves_a_zone(const std::string& message) { return message.starts_with("it leaves the no-go zone"); }
 
 /// Every twentieth of a cell along the path.
 void expect_respected(const Oracle& oracle, const std::vector<Eigen::Vector2d>& points, double radius) {
@@ -226,15 +228,16 @@ TEST(PlanWithZones, EveryPathKeepsTheRule) {
     for (int i = 0; i < 15; ++i) {
       const Eigen::Vector2d start = anywhere();
       const Eigen::Vector2d goal = anywhere();
-      const PlanResult result = plan(grid, start, goal, radius, layer);
-      const PlanResult back = plan(grid, goal, start, radius, layer);
+      const PlanResult result = plan({grid, layer}, start, goal, radius);
+      const PlanResult back = plan({grid, layer}, goal, start, radius);
       ASSERT_NE(result.reason, Reason::kValidationFailed) << "seed " << seed;
+      if (leaves_a_zone(result.message) || leaves_a_zone(back.message)) continue;
       ASSERT_EQ(result.reason == Reason::kOk, back.reason == Reason::kOk) << "seed " << seed;
       ++failed[result.reason];
       if (result.message.find("without them there is a way") != std::string::npos) {
         std::vector<Zone> rest = zones;
         std::erase_if(rest, [](const Zone& zone) { return zone.kind == Zone::Kind::kNoGo; });
-        ASSERT_EQ(plan(grid, start, goal, radius, layer_of(rest)).reason, Reason::kOk) << "seed " << seed;
+        ASSERT_EQ(plan({grid, layer_of(rest)}, start, goal, radius).reason, Reason::kOk) << "seed " << seed;
       }
       if (result.reason != Reason::kOk) continue;
       ++found;
@@ -244,7 +247,8 @@ TEST(PlanWithZones, EveryPathKeepsTheRule) {
   }
   EXPECT_GT(found, 200);
   EXPECT_GT(failed[Reason::kGoalInNoGo], 50);
-  EXPECT_GT(failed[Reason::kNoValidPath], 50);
+  EXPECT_GT(failed[Reason::kNoValidPath], 30);
+  EXPECT_GT(failed[Reason::kBlockedByUnknown], 10);
 }
 
 class ZonesAndActivePaths : public testing::Test {
@@ -261,11 +265,12 @@ class ZonesAndActivePaths : public testing::Test {
     request.start = Eigen::Vector2d(4, 8);
     request.goal = {25, 8};
     request.keep_active = true;
-    return planner_.request(request, radius, {1, utime_}).path;
+    return planner_.request(request, {radius}, {1, utime_}).path.value();
   }
   std::vector<Path> set(const std::vector<Zone>& zones) {
     planner_.set_zones(zones);
     utime_ += 1'000'000;
+    planner_.serve({1, utime_});
     return planner_.replan({1, utime_});
   }
 
@@ -284,17 +289,16 @@ TEST_F(ZonesAndActivePaths, NoPathBeforeTheZonesAreKnown) {
 }
 
 TEST_F(ZonesAndActivePaths, AZoneReplansThePathsItTouchesAndNoOther) {
-  show(kHall);
+  show(Rows(40, std::string(30, '.')));
   set({});
-  ask();
-  EXPECT_TRUE(set({no_go("aside", {10, 15}, {12, 18})}).empty());
-  EXPECT_TRUE(set({no_go("aside", {10, 9.9}, {12, 18})}).empty());  // its cells begin 1 m off
-  std::vector<Path> paths = set({no_go("aside", {10, 8.9}, {12, 18})});
+  const double length = ask().length;
+  EXPECT_TRUE(set({no_go("aside", {10, 32}, {12, 35})}).empty());
+  EXPECT_TRUE(set({no_go("aside", {0, 8}, {1, 9})}).empty());  // near, but not so near that it costs a tenth
+  std::vector<Path> paths = set({no_go("aside", {10, 7}, {20, 18})});
   ASSERT_EQ(paths.size(), 1U);
   EXPECT_EQ(paths[0].status, "OK");
   EXPECT_EQ(paths[0].plan_number, 1);
-  EXPECT_GT(paths[0].length, 21);
-  EXPECT_TRUE(set({}).empty());  // it keeps the path it has
+  EXPECT_GT(paths[0].length, length);
   paths = set({no_go("all", {10, -5}, {12, 50})});
   ASSERT_EQ(paths.size(), 1U);
   EXPECT_EQ(paths[0].status, "NO_VALID_PATH");
@@ -302,7 +306,7 @@ TEST_F(ZonesAndActivePaths, AZoneReplansThePathsItTouchesAndNoOther) {
   paths = set({});
   ASSERT_EQ(paths.size(), 1U);
   EXPECT_EQ(paths[0].status, "OK");
-  EXPECT_NEAR(paths[0].length, 21, 1e-9);
+  EXPECT_NEAR(paths[0].length, length, 1e-9);
   paths = set({no_go("yard", {24, -1e6}, {1e6, 1e6})});  // not drawn cell by cell
   ASSERT_EQ(paths.size(), 1U);
   EXPECT_EQ(paths[0].status, "GOAL_IN_NO_GO");
@@ -335,7 +339,7 @@ TEST(PlanWithZones, AnEndThatAWallClosesTooSaysSo) {
   const Grid grid = test::sketch(rows);
   const Eigen::Vector2d start(4, 8);
   const auto message = [&](const Eigen::Vector2d& goal, const Zone& zone) {
-    return plan(grid, start, goal, 0.8, layer_of({zone})).message;
+    return plan({grid, layer_of({zone})}, start, goal, 0.8).message;
   };
   const Zone over = no_go("over", {25, 8}, {26, 9}), before = no_go("before", {23.9, 5}, {24.5, 12});
   EXPECT_NE(message({25.5, 8.5}, over).find("'over', and is occupied"), std::string::npos);
@@ -380,9 +384,9 @@ TEST_F(ZonesAndActivePaths, TheAnswerIsNeverWrongWhileZonesComeAndGo) {
       }
       for (const Path& next : set(zones)) path = next;
       const Grid& grid = planner_.grid();
-      const PlanResult fresh = plan(grid, {4, 8}, {25, 8}, 0.4, layer_of(zones));
+      const PlanResult fresh = plan({grid, layer_of(zones)}, {4, 8}, {25, 8}, 0.4);
       ASSERT_EQ(path.status == "OK", fresh.reason == Reason::kOk) << "seed " << seed << " change " << change;
-      if (path.status != "OK") continue;
+      if (path.status != "OK" || leaves_a_zone(path.message)) continue;
       std::vector<Eigen::Vector2d> points;
       for (const Eigen::Vector3d& p : path.points) points.push_back(p.head<2>());
       expect_respected(Oracle(grid, zones), points, 0.4);

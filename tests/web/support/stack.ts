@@ -23,7 +23,7 @@ export class Stack {
     const site = join(folder, "site.yaml");
     writeFileSync(site, `state: ${folder}/state
 resolution: ${resolution}
-agents: {unlisted: {radius: 0.18}}
+agents: {unlisted: {kind: headset, radius: 0.18}, robot1: {kind: lidar, radius: 0.18}}
 planner: {zmin: 0.3, zmax: 1.1}
 bridge: {port: 0, local_role: robot}
 `);
