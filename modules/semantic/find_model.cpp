@@ -202,8 +202,7 @@ Result<std::vector<FoundModel>> find_model(const TriangleMesh& mesh, double scal
     T.pretranslate(centre_of(one.at, resolution));
     FoundModel model = judged(few, map, resolution, fit_object(few, occupied, resolution, T, kNear).T_map_model);
     model.explained = explained(*body, furniture, resolution, model.T_map_model);
-    model.score *= model.explained;
-    if (getenv("FM")) printf("%f %f %f  %f %f score %f\n",model.T_map_model.translation().x(),model.T_map_model.translation().y(),model.T_map_model.translation().z(),model.matched,model.explained,model.score);
+    model.score *= model.explained * model.explained;
     if (model.score >= options.min_score) found.push_back(model);
   }
   std::ranges::stable_sort(

@@ -12,7 +12,7 @@ namespace concord {
 struct FoundModel {
   Transform T_map_model = Transform::Identity();
   /// 0 to 1: of its surface that the map speaks of, the share that is occupied (less if that is little), times
-  /// `explained`
+  /// the square of `explained`: what is there besides tells things apart better than what is not to be seen of them
   double score = 0;
   double matched = 0;    ///< share of its surface in an occupied voxel or at the face of one
   double free = 0;       ///< share of its surface that lies amidst what was seen to be free
@@ -42,7 +42,7 @@ inline constexpr std::size_t kCandidates = 120;
 inline constexpr std::int64_t kMaxFindCells = 150'000'000;
 inline constexpr double kNear = 0.2;  ///< metres: half of what one direction is from the next, at the end of a metre
 inline constexpr std::size_t kFitPoints = 500;
-inline constexpr double kBeyond = 2.0;  ///< voxels
+inline constexpr double kBeyond = 3.0;      ///< voxels
 inline constexpr double kEnoughSeen = 0.8;  ///< of the surface must be occupied for a full score
 
 }  // namespace concord
