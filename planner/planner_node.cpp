@@ -33,9 +33,10 @@ PlannerNode::PlannerNode(const NodeContext& context)
                  .on_brick = [this](BrickIndex index, Brick brick) { planner_.set_brick(index, std::move(brick)); },
                  .on_end = [this] { planner_.clear_map(); }}),
       zones_(context.bus, context.counters, "out/zones", [this](const std::vector<Zone>&) { on_zones(); }),
-      label_zones_(context.bus, context.counters, "out/label_zones", [this](const std::vector<Zone>&) {
-        if (zones_.synced()) on_zones();  // else they are still to come
-      }),
+      label_zones_(context.bus, context.counters, "out/label_zones",
+                   [this](const std::vector<Zone>&) {
+                     if (zones_.synced()) on_zones();  // else they are still to come
+                   }),
       watches_(context),
       blamed_(context) {
   Bus& bus = context_.bus;

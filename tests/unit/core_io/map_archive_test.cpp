@@ -164,11 +164,11 @@ TEST(MapArchive, BricksNeedNotBeKept) {
 }
 
 TEST(MapArchive, UnknownSectionsArePassedOver) {
-  const auto labels = [](Bytes& out) { out.push_back(42); };
+  const auto note = [](Bytes& out) { out.push_back(42); };
   const Bytes file = FileOf()
-                         .section({'N', 'O', 'T', 'E'}, labels)
+                         .section({'N', 'O', 'T', 'E'}, note)
                          .lattice()
-                         .section({'L', 'A', 'B', 'L'}, labels, 77)
+                         .section({'P', 'I', 'C', 'T'}, note, 77)
                          .layer(kRobot, 1, 1, one_brick())
                          .corrections({correction(1, "e", edit_of({{1, 2, 3}}))})
                          .section({0, 0, 0, 0}, [](Bytes&) {})
