@@ -16,7 +16,7 @@ std::string founding_id(const std::string& id) {
   return (id.size() <= kLongestStem ? id : id.substr(id.size() - kLongestStem)) + ".target";
 }
 
-bool has_frame(const AlignLayers& layers, const AlignResult::Used& used) {
+bool has_frame(const AgentLayers& layers, const AlignResult::Used& used) {
   const auto it = layers.find(used.agent);
   return it != layers.end() && it->second.frame_id == used.frame_id;
 }
@@ -134,7 +134,7 @@ bool AlignDesk::has_offer(const std::string& agent) const {
                              [&](const Case& one) { return is_standing_offer(one) && one.request.source == agent; });
 }
 
-void AlignDesk::heed(const AlignLayers& layers) {
+void AlignDesk::heed(const AgentLayers& layers) {
   for (Case& one : cases_) {
     if (!one.asked || one.accepted) continue;
     if (lies_at({one.asked->agent, one.asked->frame_id, one.asked->T_map_agent}, layers)) agree(one);
@@ -157,7 +157,7 @@ std::vector<std::string> AlignDesk::expire_offers(std::int64_t now) {
 
 /// Refused: the map has moved since (kStale), a frame of the target has ended (kBadFrame), it is in no map
 /// (kNotAligned).
-Result<Transform> AlignDesk::T_map_target(const Case& found, const AlignLayers& layers) const {
+Result<Transform> AlignDesk::T_map_target(const Case& found, const AgentLayers& layers) const {
   const std::string& target = found.result.target;
   if (target.empty()) {
     for (const Place& place : found.places) {
@@ -187,7 +187,7 @@ Result<AlignDesk::Acceptance> AlignDesk::found_map(const Case& found, const Alig
   return Acceptance{founding_->asked, true};
 }
 
-Result<AlignDesk::Acceptance> AlignDesk::accept(const AlignDecision& decision, const AlignLayers& layers,
+Result<AlignDesk::Acceptance> AlignDesk::accept(const AlignDecision& decision, const AgentLayers& layers,
                                                 bool is_founded, std::int64_t now) {
   if (is_founded) founding_.reset();
   Case* found = find(decision.align_id);
@@ -246,7 +246,7 @@ Result<void> AlignDesk::drop(const AlignDecision& decision) {
   return {};
 }
 
-std::vector<const AlignResult*> AlignDesk::standing(const AlignLayers& layers, std::int64_t now) {
+std::vector<const AlignResult*> AlignDesk::standing(const AgentLayers& layers, std::int64_t now) {
   std::vector<const AlignResult*> out;
   for (Case& one : cases_) {
     if (one.state != State::kDone || one.accepted) continue;
@@ -257,7 +257,7 @@ std::vector<const AlignResult*> AlignDesk::standing(const AlignLayers& layers, s
 }
 
 /// Unless it is said no to for good: the frames are those that it was found in, and the map has not moved since.
-bool AlignDesk::may_hold(const Case& found, const AlignLayers& layers) const {
+bool AlignDesk::may_hold(const Case& found, const AgentLayers& layers) const {
   if (!has_frame(layers, found.result.source)) return false;
   const auto T = T_map_target(found, layers);
   return T || T.error().code == Code::kNotAligned;

@@ -86,7 +86,7 @@ AlignNode::~AlignNode() {
 
 void AlignNode::repeat() {
   const std::int64_t now = context_.bus.now();
-  const AlignLayers& layers = layers_.now();
+  const AgentLayers& layers = layers_.now();
   desk_.heed(layers);
   for (const std::string& agent : desk_.expire_offers(now)) watch_.forget(agent);
   for (const AlignResult* result : desk_.standing(layers, now)) say(*result);
