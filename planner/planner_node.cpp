@@ -51,7 +51,11 @@ PlannerNode::PlannerNode(const NodeContext& context, std::launch how)
                 {.on_frame = [this](const std::string& frame_id) { on_frame(frame_id); },
                  .on_brick = [this](BrickIndex index, Brick brick) { planner_.set_brick(index, std::move(brick)); },
                  .on_end = [this] { planner_.clear_map(); }}),
-      zones_(context.bus, context.counters, "out/zones", [this](const std::vector<Zone>& zones) { on_zones(zones); }),
+      zones_(context.bus, context.counters, "out/zones", [this](const std::vector<Zone>&) { on_zones(); }),
+      label_zones_(context.bus, context.counters, "out/label_zones",
+                   [this](const std::vector<Zone>&) {
+                     if (zones_.synced()) on_zones();  // else they are still to come
+                   }),
       watches_(context),
       blamed_(context),
       how_(how),
@@ -117,8 +121,10 @@ void PlannerNode::on_frame(const std::string& frame_id) {
 }
 
 /// At once: a robot may be on its way into a zone.
-void PlannerNode::on_zones(const std::vector<Zone>& zones) {
-  planner_.set_zones(zones);
+void PlannerNode::on_zones() {
+  std::vector<Zone> all = zones_.items();
+  all.insert(all.end(), label_zones_.items().begin(), label_zones_.items().end());
+  planner_.set_zones(all);
   context_.counters.set("zones", static_cast<std::int64_t>(planner_.zones().size()));
   context_.counters.set("zones_not_cell_by_cell", static_cast<std::int64_t>(planner_.zones().coarse().size()));
   project();

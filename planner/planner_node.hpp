@@ -31,7 +31,7 @@ class PlannerNode {
 
  private:
   void on_frame(const std::string& frame_id);
-  void on_zones(const std::vector<Zone>& zones);
+  void on_zones();
   void on_agents(const AgentList& list);
   void on_request(const PathRequest& request);
   void cancel(const PathRequest& request);
@@ -50,6 +50,7 @@ class PlannerNode {
   BrickSender sender_;
   BrickReceiver receiver_;
   ListReceiver<Zone> zones_;
+  ListReceiver<Zone> label_zones_;  ///< around things that robots keep away from; none while semantic has said none
   WatchesNode watches_;
   BlamedEditsNode blamed_;
   std::int64_t map_heard_ = 0;

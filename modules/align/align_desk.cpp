@@ -16,7 +16,7 @@ std::string founding_id(const std::string& id) {
   return (id.size() <= kLongestStem ? id : id.substr(id.size() - kLongestStem)) + ".target";
 }
 
-bool has_frame(const AlignLayers& layers, const AlignResult::Used& used) {
+bool has_frame(const AgentLayers& layers, const AlignResult::Used& used) {
   const auto it = layers.find(used.agent);
   return it != layers.end() && it->second.frame_id == used.frame_id;
 }
@@ -29,6 +29,8 @@ void agree(AlignDesk::Case& one) {
   one.accepted = true;
   one.result.open = false;
 }
+
+bool is_ahead(const AlignDesk::Case& one) { return one.state == State::kWaiting || one.state == State::kRunning; }
 
 /// Said by the watch, until somebody has put it right.
 bool is_standing_offer(const AlignDesk::Case& one) { return one.is_offer && !one.accepted; }
@@ -51,15 +53,12 @@ std::size_t AlignDesk::ahead_of(const std::string& id) const {
   std::size_t ahead = 0;
   for (const Case& one : cases_) {
     if (one.request.id == id) break;
-    if (one.state != State::kDone) ++ahead;
+    ahead += is_ahead(one) ? 1 : 0;
   }
   return ahead;
 }
 
-std::size_t AlignDesk::waiting() const {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(cases_, [](const Case& one) { return one.state != State::kDone; }));
-}
+std::size_t AlignDesk::waiting() const { return static_cast<std::size_t>(std::ranges::count_if(cases_, is_ahead)); }
 
 std::size_t AlignDesk::offers() const {
   return static_cast<std::size_t>(std::ranges::count_if(cases_, is_standing_offer));
@@ -106,7 +105,7 @@ bool AlignDesk::give_up(const std::string& id) {
 
 /// Of what people asked for. Those that wait are never among them, nor what the watch says: they are few.
 void AlignDesk::forget_the_oldest() {
-  const auto may_go = [](const Case& one) { return one.state == State::kDone && !is_standing_offer(one); };
+  const auto may_go = [](const Case& one) { return !is_ahead(one) && !is_standing_offer(one); };
   while (std::cmp_greater(std::ranges::count_if(cases_, may_go), kMaxKept)) {
     cases_.erase(std::ranges::find_if(cases_, may_go));
   }
@@ -135,7 +134,7 @@ bool AlignDesk::has_offer(const std::string& agent) const {
                              [&](const Case& one) { return is_standing_offer(one) && one.request.source == agent; });
 }
 
-void AlignDesk::heed(const AlignLayers& layers) {
+void AlignDesk::heed(const AgentLayers& layers) {
   for (Case& one : cases_) {
     if (!one.asked || one.accepted) continue;
     if (lies_at({one.asked->agent, one.asked->frame_id, one.asked->T_map_agent}, layers)) agree(one);
@@ -158,7 +157,7 @@ std::vector<std::string> AlignDesk::expire_offers(std::int64_t now) {
 
 /// Refused: the map has moved since (kStale), a frame of the target has ended (kBadFrame), it is in no map
 /// (kNotAligned).
-Result<Transform> AlignDesk::T_map_target(const Case& found, const AlignLayers& layers) const {
+Result<Transform> AlignDesk::T_map_target(const Case& found, const AgentLayers& layers) const {
   const std::string& target = found.result.target;
   if (target.empty()) {
     for (const Place& place : found.places) {
@@ -188,11 +187,11 @@ Result<AlignDesk::Acceptance> AlignDesk::found_map(const Case& found, const Alig
   return Acceptance{founding_->asked, true};
 }
 
-Result<AlignDesk::Acceptance> AlignDesk::accept(const AlignDecision& decision, const AlignLayers& layers,
+Result<AlignDesk::Acceptance> AlignDesk::accept(const AlignDecision& decision, const AgentLayers& layers,
                                                 bool is_founded, std::int64_t now) {
   if (is_founded) founding_.reset();
   Case* found = find(decision.align_id);
-  if (found == nullptr) return expired(decision.align_id);
+  if (found == nullptr || found->state == State::kDropped) return expired(decision.align_id);
   if (found->state != State::kDone) return refuse(Code::kBusy, "it is not found yet; ask again");
   if (found->accepted) {
     if (found->asked->id == decision.id) return Acceptance{*found->asked, false};
@@ -231,16 +230,23 @@ void AlignDesk::on_merge(const std::string& id, bool ok) {
 }
 
 Result<void> AlignDesk::drop(const AlignDecision& decision) {
-  const Case* found = find(decision.align_id);
+  Case* found = find(decision.align_id);
   if (found == nullptr) return expired(decision.align_id);
   if (found->accepted) {
     return refuse(Code::kConflict, "it was accepted; take it back with: concord undo " + found->asked->id);
   }
-  std::erase_if(cases_, [&](const Case& one) { return one.request.id == decision.align_id; });
+  if (found->is_offer) {
+    std::erase_if(cases_, [&](const Case& one) { return one.request.id == decision.align_id; });
+    return {};
+  }
+  // It is kept: whoever asked does so again until there is an answer.
+  found->state = State::kDropped;
+  found->result = {};
+  forget_the_oldest();
   return {};
 }
 
-std::vector<const AlignResult*> AlignDesk::standing(const AlignLayers& layers, std::int64_t now) {
+std::vector<const AlignResult*> AlignDesk::standing(const AgentLayers& layers, std::int64_t now) {
   std::vector<const AlignResult*> out;
   for (Case& one : cases_) {
     if (one.state != State::kDone || one.accepted) continue;
@@ -251,7 +257,7 @@ std::vector<const AlignResult*> AlignDesk::standing(const AlignLayers& layers, s
 }
 
 /// Unless it is said no to for good: the frames are those that it was found in, and the map has not moved since.
-bool AlignDesk::may_hold(const Case& found, const AlignLayers& layers) const {
+bool AlignDesk::may_hold(const Case& found, const AgentLayers& layers) const {
   if (!has_frame(layers, found.result.source)) return false;
   const auto T = T_map_target(found, layers);
   return T || T.error().code == Code::kNotAligned;

@@ -21,7 +21,7 @@ class AlignDesk {
   static constexpr std::int64_t kOpenFor = 600'000'000;  ///< microseconds in which it can be accepted
 
   struct Case {
-    enum class State { kWaiting, kRunning, kDone };
+    enum class State { kWaiting, kRunning, kDone, kDropped };
     AlignRequest request;  ///< of an offer only its id and source
     std::uint64_t content = 0;
     State state = State::kWaiting;
@@ -52,7 +52,7 @@ class AlignDesk {
   void withdraw_offer(const std::string& agent);
   /// Withdraws what is said of agents that lie elsewhere now, or among others that do; and takes what shows in the map
   /// for accepted, though merge's answer was lost.
-  void heed(const AlignLayers& layers);
+  void heed(const AgentLayers& layers);
   /// Withdraws what has been said for too long. @return of which agents.
   std::vector<std::string> expire_offers(std::int64_t now);
   [[nodiscard]] bool has_offer(const std::string& agent) const;
@@ -67,22 +67,23 @@ class AlignDesk {
     TransformRequest request;
     bool is_founding = false;
   };
-  [[nodiscard]] Result<Acceptance> accept(const AlignDecision& decision, const AlignLayers& layers, bool is_founded,
+  [[nodiscard]] Result<Acceptance> accept(const AlignDecision& decision, const AgentLayers& layers, bool is_founded,
                                           std::int64_t now);
   /// What merge said to what it was asked by this id.
   void on_merge(const std::string& id, bool ok);
-  /// Refused (kExpired): nothing of that id is kept; (kConflict): it was accepted.
+  /// Again by whoever has not heard of it. Refused (kExpired): nothing of that id is kept; (kConflict): it was
+  /// accepted.
   [[nodiscard]] Result<void> drop(const AlignDecision& decision);
 
   /// What people should know now: what can be accepted, and what the watch says. The oldest first.
-  [[nodiscard]] std::vector<const AlignResult*> standing(const AlignLayers& layers, std::int64_t now);
+  [[nodiscard]] std::vector<const AlignResult*> standing(const AgentLayers& layers, std::int64_t now);
   [[nodiscard]] std::size_t waiting() const;
   [[nodiscard]] std::size_t offers() const;
 
  private:
   [[nodiscard]] Case* find(const std::string& id);
-  [[nodiscard]] Result<Transform> T_map_target(const Case& found, const AlignLayers& layers) const;
-  [[nodiscard]] bool may_hold(const Case& found, const AlignLayers& layers) const;
+  [[nodiscard]] Result<Transform> T_map_target(const Case& found, const AgentLayers& layers) const;
+  [[nodiscard]] bool may_hold(const Case& found, const AgentLayers& layers) const;
   [[nodiscard]] Result<Acceptance> found_map(const Case& found, const AlignDecision& decision, std::int64_t now);
   void forget_the_oldest();
 

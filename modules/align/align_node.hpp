@@ -10,7 +10,7 @@
 
 #include "align/align_desk.hpp"
 #include "align/drift_watch.hpp"
-#include "align/layers_node.hpp"
+#include "bus/layers_node.hpp"
 #include "bus/process.hpp"
 #include "bus/replies.hpp"
 

@@ -19,7 +19,7 @@ constexpr double kContradictedLevel = 0.15;
 /// So much says that an agent lies wrong even where little is left that lies on the others.
 constexpr double kContradictedAnyhow = 0.25;
 
-Result<const AlignLayer*> layer_of(const std::string& agent, const std::string& frame_id, const AlignLayers& layers) {
+Result<const AgentLayer*> layer_of(const std::string& agent, const std::string& frame_id, const AgentLayers& layers) {
   const auto it = layers.find(agent);
   if (it == layers.end() || it->second.frame_id.empty()) {
     return refuse(Code::kNoAgent, "no agent " + agent + " has sent a submap; see: concord agents");
@@ -31,16 +31,16 @@ Result<const AlignLayer*> layer_of(const std::string& agent, const std::string& 
   return &it->second;
 }
 
-AlignResult::Used used(const std::string& agent, const AlignLayer& layer) {
+AlignResult::Used used(const std::string& agent, const AgentLayer& layer) {
   return {agent, layer.frame_id, layer.revision};
 }
 
-void add_part(const std::string& agent, const AlignLayer& layer, BrickMap map, const Transform& T, AlignTask& task) {
+void add_part(const std::string& agent, const AgentLayer& layer, BrickMap map, const Transform& T, AlignTask& task) {
   task.target.push_back({agent, std::move(map), T, layer.weight});
   task.used_layers.push_back(used(agent, layer));
 }
 
-AlignTask begin_task(const std::string& agent, const AlignLayer& layer, const AlignSite& site) {
+AlignTask begin_task(const std::string& agent, const AgentLayer& layer, const AlignSite& site) {
   AlignTask task;
   task.site = site;
   task.used_source = used(agent, layer);
@@ -62,7 +62,7 @@ Eigen::AlignedBox3d bounds_of(const BrickMap& map, double resolution) {
 }
 
 /// The bricks of a layer that touch a box in the map's frame.
-BrickMap cut(const AlignLayer& layer, const Transform& T_map_layer, const Eigen::AlignedBox3d& box, double resolution) {
+BrickMap cut(const AgentLayer& layer, const Transform& T_map_layer, const Eigen::AlignedBox3d& box, double resolution) {
   BrickMap out;
   if (box.isEmpty()) return out;
   const Eigen::AlignedBox3d near = box.transformed(T_map_layer.inverse());
@@ -103,7 +103,7 @@ Result<Alignment> found_of(const AlignTask& task, int threads) {
 
 }  // namespace
 
-std::vector<Place> places_of(const AlignLayers& layers) {
+std::vector<Place> places_of(const AgentLayers& layers) {
   std::vector<Place> places;
   for (const auto& [agent, layer] : layers) {
     if (layer.T_map_agent) places.push_back({agent, layer.frame_id, *layer.T_map_agent});
@@ -111,7 +111,7 @@ std::vector<Place> places_of(const AlignLayers& layers) {
   return places;
 }
 
-bool lies_at(const Place& place, const AlignLayers& layers) {
+bool lies_at(const Place& place, const AgentLayers& layers) {
   const auto it = layers.find(place.agent);
   return it != layers.end() && it->second.frame_id == place.frame_id && it->second.T_map_agent &&
          it->second.T_map_agent->isApprox(place.T_map_agent, 1e-9);
@@ -127,7 +127,7 @@ std::vector<Place> places_of(const AlignTask& task) {
   return places;
 }
 
-Result<void> check_task(const AlignRequest& request, const AlignLayers& layers) {
+Result<void> check_task(const AlignRequest& request, const AgentLayers& layers) {
   if (request.source == request.target) return refuse(Code::kBadRequest, "an agent lies in itself where it lies");
   const auto source = layer_of(request.source, request.source_frame_id, layers);
   if (!source) return tl::unexpected(source.error());
@@ -146,16 +146,16 @@ Result<void> check_task(const AlignRequest& request, const AlignLayers& layers) 
   return refuse(Code::kNoMap, "nobody but " + request.source + " is in the map; name an agent to align it to");
 }
 
-Result<AlignTask> make_task(const AlignRequest& request, const AlignLayers& layers, const AlignSite& site) {
+Result<AlignTask> make_task(const AlignRequest& request, const AgentLayers& layers, const AlignSite& site) {
   if (const auto can = check_task(request, layers); !can) return tl::unexpected(can.error());
-  const AlignLayer& source = layers.at(request.source);
+  const AgentLayer& source = layers.at(request.source);
   AlignTask task = begin_task(request.source, source, site);
   task.id = request.id;
   task.target_agent = request.target;
   task.T_target_source = request.T_target_source;
   task.source = source.map;
   if (!request.target.empty()) {
-    const AlignLayer& target = layers.at(request.target);
+    const AgentLayer& target = layers.at(request.target);
     add_part(request.target, target, target.map, Transform::Identity(), task);
     return task;
   }
@@ -166,10 +166,10 @@ Result<AlignTask> make_task(const AlignRequest& request, const AlignLayers& laye
   return task;
 }
 
-Result<AlignTask> make_recheck(const std::string& agent, const AlignLayers& layers, const AlignSite& site) {
+Result<AlignTask> make_recheck(const std::string& agent, const AgentLayers& layers, const AlignSite& site) {
   const auto found = layer_of(agent, "", layers);
   if (!found) return tl::unexpected(found.error());
-  const AlignLayer& source = **found;
+  const AgentLayer& source = **found;
   if (!source.T_map_agent) return refuse(Code::kNotAligned, agent + " is not aligned");
   const Transform& T = *source.T_map_agent;
   AlignTask task = begin_task(agent, source, site);

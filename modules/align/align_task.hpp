@@ -8,24 +8,13 @@
 #include <vector>
 
 #include "align/align.hpp"
+#include "core/agent_layer.hpp"
 #include "core/alignment.hpp"
 #include "core/brick_map.hpp"
 #include "core/error.hpp"
 #include "core/policy.hpp"
 
 namespace concord {
-
-/// One agent's submap as alignment keeps it, and where it lies.
-struct AlignLayer {
-  std::string frame_id;
-  BrickMap map;
-  std::int64_t revision = 0;
-  bool synced = false;  ///< all that its stream has announced has arrived
-  int weight = 1;
-  std::optional<Transform> T_map_agent;
-};
-/// By agent.
-using AlignLayers = std::map<std::string, AlignLayer>;
 
 /// Where an agent lay in the map.
 struct Place {
@@ -34,9 +23,9 @@ struct Place {
   Transform T_map_agent = Transform::Identity();
 };
 /// Of all who are aligned, by agent.
-[[nodiscard]] std::vector<Place> places_of(const AlignLayers& layers);
+[[nodiscard]] std::vector<Place> places_of(const AgentLayers& layers);
 /// Whether it lies there still.
-[[nodiscard]] bool lies_at(const Place& place, const AlignLayers& layers);
+[[nodiscard]] bool lies_at(const Place& place, const AgentLayers& layers);
 
 /// What the map's lattice and policy are.
 struct AlignSite {
@@ -69,8 +58,8 @@ struct AlignTask {
 /// other aligned agents make: an agent that is in it already would agree with itself. Refused: no such agent, or one
 /// without a submap (kNoAgent); in another frame now (kBadFrame); not whole yet (kBusy); itself (kBadRequest); nobody
 /// else is in the map (kNoMap).
-[[nodiscard]] Result<void> check_task(const AlignRequest& request, const AlignLayers& layers);
-[[nodiscard]] Result<AlignTask> make_task(const AlignRequest& request, const AlignLayers& layers,
+[[nodiscard]] Result<void> check_task(const AlignRequest& request, const AgentLayers& layers);
+[[nodiscard]] Result<AlignTask> make_task(const AlignRequest& request, const AgentLayers& layers,
                                           const AlignSite& site);
 
 /// Where those lay that the task took to be there: who makes up the map and, of a recheck, the agent itself; empty
@@ -79,7 +68,7 @@ struct AlignTask {
 
 /// Whether an aligned agent lies right among the others: only what lies within `kRecheckMargin` of both is copied.
 /// Refused: as above, and kNotAligned.
-[[nodiscard]] Result<AlignTask> make_recheck(const std::string& agent, const AlignLayers& layers,
+[[nodiscard]] Result<AlignTask> make_recheck(const std::string& agent, const AgentLayers& layers,
                                              const AlignSite& site);
 inline constexpr double kRecheckMargin = 2.0;  // metres
 /// Whether the others speak against where an agent lies beyond what a place that is right has against it: DIVERGED, and

@@ -13,7 +13,7 @@ constexpr double kSlipRadians = 1.5 * M_PI / 180.0;  // half as much again as al
 
 }  // namespace
 
-std::optional<std::string> DriftWatch::next(const AlignLayers& layers, std::int64_t now) const {
+std::optional<std::string> DriftWatch::next(const AgentLayers& layers, std::int64_t now) const {
   if (now < not_before_) return std::nullopt;
   const auto aligned =
       std::ranges::count_if(layers, [](const auto& entry) { return entry.second.T_map_agent.has_value(); });
@@ -32,14 +32,14 @@ std::optional<std::string> DriftWatch::next(const AlignLayers& layers, std::int6
   return chosen != nullptr ? std::optional(*chosen) : std::nullopt;
 }
 
-bool DriftWatch::is_as_it_was(const Look& look, const AlignLayers& layers) {
+bool DriftWatch::is_as_it_was(const Look& look, const AgentLayers& layers) {
   const auto aligned =
       std::ranges::count_if(layers, [](const auto& entry) { return entry.second.T_map_agent.has_value(); });
   return layers.at(look.agent).revision == look.revision && std::cmp_equal(aligned, look.places.size()) &&
          std::ranges::all_of(look.places, [&](const Place& place) { return lies_at(place, layers); });
 }
 
-DriftWatch::Look DriftWatch::begin(const std::string& agent, const AlignLayers& layers) {
+DriftWatch::Look DriftWatch::begin(const std::string& agent, const AgentLayers& layers) {
   return {agent, layers.at(agent).revision, places_of(layers)};
 }
 

@@ -27,9 +27,9 @@ class DriftWatch {
 
   /// The aligned agent that was looked at the longest ago, of those that sent something since, or that lie otherwise
   /// among the others: they or it were moved. None: not now.
-  [[nodiscard]] std::optional<std::string> next(const AlignLayers& layers, std::int64_t now) const;
+  [[nodiscard]] std::optional<std::string> next(const AgentLayers& layers, std::int64_t now) const;
   /// @pre the agent is among the layers.
-  [[nodiscard]] static Look begin(const std::string& agent, const AlignLayers& layers);
+  [[nodiscard]] static Look begin(const std::string& agent, const AgentLayers& layers);
   /// That look is over, and took so many microseconds.
   void looked_at(Look look, std::int64_t took, std::int64_t now);
   /// What was found of it holds no longer: it is looked at again.
@@ -40,7 +40,7 @@ class DriftWatch {
     Look look;
     std::int64_t when = 0;
   };
-  [[nodiscard]] static bool is_as_it_was(const Look& look, const AlignLayers& layers);
+  [[nodiscard]] static bool is_as_it_was(const Look& look, const AgentLayers& layers);
 
   std::map<std::string, Seen> seen_;
   std::int64_t not_before_ = 0;

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cassert>
 
+#include "bus/messages_asset.hpp"
+#include "bus/messages_detection.hpp"
+#include "bus/messages_label.hpp"
 #include "bus/pack.hpp"
 
 namespace concord {
@@ -202,7 +205,13 @@ std::int64_t ListReceiver<T>::back_off() {
 
 template class ListSender<Zone>;
 template class ListSender<Lease>;
+template class ListSender<LabelSlot>;
+template class ListSender<Asset>;
+template class ListSender<Thing>;
 template class ListReceiver<Zone>;
 template class ListReceiver<Lease>;
+template class ListReceiver<LabelSlot>;
+template class ListReceiver<Asset>;
+template class ListReceiver<Thing>;
 
 }  // namespace concord

@@ -15,25 +15,6 @@ namespace {
 
 using wire::bad;
 
-constexpr WireField kFrame[] = {text(wire::kNameLength), text(wire::kNameLength)};  ///< frame_agent, frame_id
-
-template <class Lcm>
-void put_frame(const WorkFrame& frame, Lcm& out) {
-  out.frame_agent = frame.agent;
-  out.frame_id = frame.frame_id;
-}
-
-template <class Lcm>
-Result<WorkFrame> frame_of(const Lcm& in) {
-  if (!in.frame_agent.empty() && !is_name(in.frame_agent)) {
-    return refuse(Code::kBadName, "frame_agent must be empty (the map's frame) or an agent's id");
-  }
-  if (!in.frame_id.empty() && (in.frame_agent.empty() || !is_name(in.frame_id))) {
-    return refuse(Code::kBadFrame, "frame_id must be empty, or a name that comes with frame_agent");
-  }
-  return WorkFrame{in.frame_agent, in.frame_id};
-}
-
 Result<std::int64_t> base_of(std::int64_t base_revision) {
   if (base_revision >= kAnyRevision) return base_revision;
   return refuse(Code::kBadRequest, "base_revision must be a revision, or -1");
@@ -124,7 +105,7 @@ Bytes encode(const EditRequest& value) {
   out.op = to_wire(value.op);
   out.shape = wire::to_wire(value.shape);
   for (int i = 0; i < 3; ++i) out.move[i] = value.move[i];
-  put_frame(value.frame, out);
+  wire::put_frame(value.frame, out);
   out.base_revision = value.base_revision;
   return wire::to_bytes(out);
 }
@@ -132,14 +113,14 @@ Bytes encode(const EditRequest& value) {
 template <>
 Decoded<EditRequest> decode<EditRequest>(std::span<const std::uint8_t> bytes) {
   static constexpr WireField kLayout[] = {record(wire::kAsker), fixed(1), wire::kShape, fixed(24),
-                                          record(kFrame),       fixed(8)};
+                                          record(wire::kFrame), fixed(8)};
   const auto in = wire::read_asked<edit_t>(bytes, kLayout);
   if (!in) return tl::unexpected(in.error());
   auto out = wire::asked_by<EditRequest>(*in);
   out.take(&EditRequest::op, edit_op(in->op));
   out.take(&EditRequest::shape, wire::shape_from_wire(in->shape));
   if (in->op == edit_t::MOVE) out.take(&EditRequest::move, move_of(*in));
-  out.take(&EditRequest::frame, frame_of(*in));
+  out.take(&EditRequest::frame, wire::frame_of(*in));
   out.take(&EditRequest::base_revision, base_of(in->base_revision));
   return out.done();
 }
@@ -170,7 +151,7 @@ Bytes encode(const ZoneRequest& value) {
   out.volume = wire::to_wire(value.volume);
   out.margin = value.margin;
   out.cost = value.cost;
-  put_frame(value.frame, out);
+  wire::put_frame(value.frame, out);
   out.base_revision = value.base_revision;
   return wire::to_bytes(out);
 }
@@ -178,7 +159,7 @@ Bytes encode(const ZoneRequest& value) {
 template <>
 Decoded<ZoneRequest> decode<ZoneRequest>(std::span<const std::uint8_t> bytes) {
   static constexpr WireField kLayout[] = {record(wire::kAsker), fixed(1),     text(wire::kTitleLength), fixed(1),
-                                          wire::kShape,         fixed(8 + 4), record(kFrame),           fixed(8)};
+                                          wire::kShape,         fixed(8 + 4), record(wire::kFrame),     fixed(8)};
   const auto in = wire::read_asked<zone_request_t>(bytes, kLayout);
   if (!in) return tl::unexpected(in.error());
   auto out = wire::asked_by<ZoneRequest>(*in);
@@ -192,7 +173,7 @@ Decoded<ZoneRequest> decode<ZoneRequest>(std::span<const std::uint8_t> bytes) {
     out.take(&ZoneRequest::margin, wire::margin_of(*in));
     out.take(&ZoneRequest::cost, Result<int>(in->cost));
   }
-  out.take(&ZoneRequest::frame, frame_of(*in));
+  out.take(&ZoneRequest::frame, wire::frame_of(*in));
   out.take(&ZoneRequest::base_revision, base_of(in->base_revision));
   return out.done();
 }
@@ -202,21 +183,21 @@ Bytes encode(const LeaseRequest& value) {
   out.lease_id = value.lease;
   out.op = value.hold ? lease_request_t::HOLD : lease_request_t::FREE;
   out.volume = wire::to_wire(value.volume);
-  put_frame(value.frame, out);
+  wire::put_frame(value.frame, out);
   return wire::to_bytes(out);
 }
 
 template <>
 Decoded<LeaseRequest> decode<LeaseRequest>(std::span<const std::uint8_t> bytes) {
   static constexpr WireField kLayout[] = {record(wire::kAsker), text(wire::kIdLength), fixed(1), wire::kShape,
-                                          record(kFrame)};
+                                          record(wire::kFrame)};
   const auto in = wire::read_asked<lease_request_t>(bytes, kLayout);
   if (!in) return tl::unexpected(in.error());
   auto out = wire::asked_by<LeaseRequest>(*in);
   out.take(&LeaseRequest::lease, lease_of(in->lease_id));
   out.take(&LeaseRequest::hold, hold_of(in->op));
   if (in->op != lease_request_t::FREE) out.take(&LeaseRequest::volume, wire::volume_from_wire(in->volume));
-  out.take(&LeaseRequest::frame, frame_of(*in));
+  out.take(&LeaseRequest::frame, wire::frame_of(*in));
   return out.done();
 }
 
@@ -242,20 +223,20 @@ Bytes encode(const LocaliseRequest& value) {
   auto out = wire::asked_by<localise_request_t>(value, value.utime);
   out.agent = value.agent;
   out.T_frame_base = wire::to_wire(value.T_frame_base);
-  put_frame(value.frame, out);
+  wire::put_frame(value.frame, out);
   return wire::to_bytes(out);
 }
 
 template <>
 Decoded<LocaliseRequest> decode<LocaliseRequest>(std::span<const std::uint8_t> bytes) {
   static constexpr WireField kLayout[] = {record(wire::kAsker), text(wire::kNameLength), fixed(wire::kTransformBytes),
-                                          record(kFrame)};
+                                          record(wire::kFrame)};
   const auto in = wire::read_asked<localise_request_t>(bytes, kLayout);
   if (!in) return tl::unexpected(in.error());
   auto out = wire::asked_by<LocaliseRequest>(*in);
   out.take(&LocaliseRequest::agent, wire::agent_of(in->agent));
   out.take(&LocaliseRequest::T_frame_base, wire::from_wire(in->T_frame_base));
-  out.take(&LocaliseRequest::frame, frame_of(*in));
+  out.take(&LocaliseRequest::frame, wire::frame_of(*in));
   return out.done();
 }
 

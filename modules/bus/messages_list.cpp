@@ -12,8 +12,10 @@ namespace {
 
 using wire::bad;
 
-/// Of any list: as many as the longest may have items.
+/// Of zones or leases: as many as there may be items.
 constexpr std::int64_t kMaxParts = kMaxZones;
+/// Of any list: what the longest takes, the label slots.
+constexpr std::int64_t kMaxPartsOfAny = 8192;
 /// Fingerprint, utime, content, part, parts, count.
 constexpr std::size_t kBeforeItems = 8 + 8 + 8 + 4 + 4 + 4;
 
@@ -139,7 +141,9 @@ Decoded<ListDigest> decode<ListDigest>(std::span<const std::uint8_t> bytes) {
   const auto in = wire::from_bytes<list_digest_t>(bytes, kLayout);
   if (!in) return bad(in.error());
   if (in->parts < 0) return bad(Code::kMalformed, "a list has a negative number of parts");
-  if (in->parts > kMaxParts) return bad(Code::kTooLarge, "a list has over " + std::to_string(kMaxParts) + " parts");
+  if (in->parts > kMaxPartsOfAny) {
+    return bad(Code::kTooLarge, "a list has over " + std::to_string(kMaxPartsOfAny) + " parts");
+  }
   return ListDigest{static_cast<std::uint64_t>(in->content), in->parts};
 }
 

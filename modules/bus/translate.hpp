@@ -172,6 +172,26 @@ template <class Lcm>
   return in;
 }
 
+/// The frame that something lies in: frame_agent, frame_id.
+inline constexpr WireField kFrame[] = {text(kNameLength), text(kNameLength)};
+
+template <class Lcm>
+void put_frame(const WorkFrame& frame, Lcm& out) {
+  out.frame_agent = frame.agent;
+  out.frame_id = frame.frame_id;
+}
+
+template <class Lcm>
+[[nodiscard]] Result<WorkFrame> frame_of(const Lcm& in) {
+  if (!in.frame_agent.empty() && !is_name(in.frame_agent)) {
+    return refuse(Code::kBadName, "frame_agent must be empty (the map's frame) or an agent's id");
+  }
+  if (!in.frame_id.empty() && (in.frame_agent.empty() || !is_name(in.frame_id))) {
+    return refuse(Code::kBadFrame, "frame_id must be empty, or a name that comes with frame_agent");
+  }
+  return WorkFrame{in.frame_agent, in.frame_id};
+}
+
 /// A text for people, cut to what its message takes.
 [[nodiscard]] inline std::string clipped(std::string text) {
   if (text.size() <= static_cast<std::size_t>(kMessageLength)) return text;

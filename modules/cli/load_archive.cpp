@@ -25,15 +25,24 @@ std::shared_ptr<std::int64_t> watch_layers(Live& live) {
   return held;
 }
 
+/// Whether semantic runs, so that its answer is waited for.
+std::shared_ptr<bool> hears_semantic(Live& live) {
+  auto heard = std::make_shared<bool>(false);
+  live.hear<ProcessStatus>("out/status/semantic", [heard](const std::string&, const ProcessStatus&) { *heard = true; });
+  return heard;
+}
+
 tl::unexpected<Failure> not_loaded(Live& live, const MapRequest& request) {
   const Answer* ingest = live.answer_to(request.id, "ingest");
   const Answer* merge = live.answer_to(request.id, "merge");
   if (ingest == nullptr && merge == nullptr) return live.no_answer("the stack");
   if (ingest == nullptr) return live.no_answer("ingest");
   if (merge == nullptr) return live.no_answer("merge");
-  return fail(
-      Exit::kIncomplete, name(Code::kBusy),
-      merge->process + ": " + merge->message + "; ask again with --id " + request.id + " and a longer --timeout");
+  const Answer* semantic = live.answer_to(request.id, "semantic");
+  if (merge->ok && semantic == nullptr) return live.no_answer("semantic");
+  const Answer& last = merge->ok && !semantic->ok ? *semantic : *merge;
+  return fail(Exit::kIncomplete, name(Code::kBusy),
+              last.process + ": " + last.message + "; ask again with --id " + request.id + " and a longer --timeout");
 }
 
 /// Somebody took a name of the file's between ingest's taking its layers and merge's taking what people made: the
@@ -56,6 +65,10 @@ Outcome load_archive(Live& live, const MapRequest& request, const Common& common
   }
   const auto ingest = [&] { return live.answer_to(request.id, "ingest"); };
   const auto merge = [&] { return live.answer_to(request.id, "merge"); };
+  const auto semantic = [&] { return live.answer_to(request.id, "semantic"); };
+  const auto labels_done = [runs = hears_semantic(live), semantic] {
+    return semantic() != nullptr ? is_done(semantic()) : !*runs;
+  };
   const auto message = to_send(request, live.bus().now());
   if (!message) return tl::unexpected(message.error());
   const auto held = watch_layers(live);
@@ -63,7 +76,8 @@ Outcome load_archive(Live& live, const MapRequest& request, const Common& common
   live.wait_while_moving(
       live.timeout(), [&] { return *held; },
       [&] {
-        if (is_refusal(ingest()) || is_refusal(merge()) || (is_done(ingest()) && is_done(merge()))) return true;
+        if (is_refusal(ingest()) || is_refusal(merge()) || is_refusal(semantic())) return true;
+        if (is_done(ingest()) && is_done(merge()) && labels_done()) return true;
         if (live.bus().now() >= due) {
           live.bus().publish("in/map_request", *message);
           due = live.bus().now() + kAskToLoadAgain;
@@ -72,9 +86,15 @@ Outcome load_archive(Live& live, const MapRequest& request, const Common& common
       });
   if (is_refusal(ingest())) return refused(*ingest());
   if (is_refusal(merge())) return refused_half_way(*merge(), is_done(ingest()));
-  if (!is_done(ingest()) || !is_done(merge())) return not_loaded(live, request);
-  common.print({{"id", request.id}, {"ingest", to_json(*ingest())}, {"merge", to_json(*merge())}},
-               "ingest: " + ingest()->message + "\nmerge: " + merge()->message);
+  if (is_refusal(semantic())) return refused_half_way(*semantic(), is_done(ingest()));
+  if (!is_done(ingest()) || !is_done(merge()) || !labels_done()) return not_loaded(live, request);
+  nlohmann::json object = {{"id", request.id}, {"ingest", to_json(*ingest())}, {"merge", to_json(*merge())}};
+  std::string words = "ingest: " + ingest()->message + "\nmerge: " + merge()->message;
+  if (semantic() != nullptr) {
+    object["semantic"] = to_json(*semantic());
+    words += "\nsemantic: " + semantic()->message;
+  }
+  common.print(object, words);
   return Exit::kDone;
 }
 

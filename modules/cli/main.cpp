@@ -3,6 +3,7 @@
 
 #include "cli/command.hpp"
 #include "cli/replay.hpp"
+#include "cli/semantic_commands.hpp"
 
 int main(int argc, char** argv) {
   // Standard output is for what was asked for.
@@ -28,6 +29,13 @@ int main(int argc, char** argv) {
   concord::add_downsample(program);
   concord::add_publish(program);
   concord::add_map(program);
+  concord::add_voxelize(program);
+  concord::add_segment(program);
+  concord::add_label(program);
+  concord::add_labels(program);
+  concord::add_assets(program);
+  concord::add_things(program);
+  concord::add_detect(program);
   concord::add_bridge_access(program);
   concord::add_up(program);
   concord::add_demo(program);

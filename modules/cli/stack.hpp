@@ -9,7 +9,7 @@
 
 namespace concord {
 
-inline constexpr const char* kStackProcesses[] = {"ingest", "merge", "align", "planner"};
+inline constexpr const char* kStackProcesses[] = {"ingest", "merge", "align", "planner", "semantic"};
 
 /// What runs as one stack.
 struct StackSpec {

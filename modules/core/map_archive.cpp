@@ -64,8 +64,8 @@ class Reader {
   /// Whether this was the last.
   Result<bool> take(const archive::Section& section) {
     const auto& [tag, version, content] = section;
-    const bool is_known =
-        tag == archive::kLattice || tag == archive::kLayer || tag == archive::kCorrections || tag == archive::kEnd;
+    const bool is_known = tag == archive::kLattice || tag == archive::kLayer || tag == archive::kCorrections ||
+                          tag == archive::kLabels || tag == archive::kEnd;
     if (is_known && version != archive::kVersion) {
       return malformed("its section " + text_of(tag) + " has version " + std::to_string(version) +
                        ", this program knows " + std::to_string(archive::kVersion) + "; run a newer one");
@@ -74,6 +74,7 @@ class Reader {
     if (tag == archive::kLattice) taken = take_lattice(content);
     if (tag == archive::kLayer) taken = take_layer(content);
     if (tag == archive::kCorrections) taken = take_corrections(content);
+    if (tag == archive::kLabels) taken = take_labels(content);
     if (tag == archive::kEnd) taken = take_end(content);
     if (!taken) return tl::unexpected(taken.error());
     ++sections_;
@@ -127,6 +128,12 @@ class Reader {
     return {};
   }
 
+  Result<void> take_labels(ByteSpan content) {
+    if (!has_corrections_ || !out_.labels.empty() || content.empty()) return out_of_order(archive::kLabels);
+    out_.labels.assign(content.begin(), content.end());
+    return {};
+  }
+
   Result<void> take_end(ByteSpan content) const {
     FieldReader in(content);
     const auto sections = in.integer<std::uint64_t>();
@@ -148,6 +155,7 @@ class Reader {
 struct MapArchiveWriter::State {
   Bytes bytes;
   Bytes corrections;
+  Bytes labels;
   std::uint64_t sections = 0;
   std::string last_agent;
   archive::Room room;
@@ -191,10 +199,18 @@ Result<void> MapArchiveWriter::add(const Correction& correction) {
   return {};
 }
 
+void MapArchiveWriter::add_labels(ByteSpan section) {
+  assert(!section.empty() && state_->labels.empty());
+  state_->labels.assign(section.begin(), section.end());
+}
+
 Result<Bytes> MapArchiveWriter::finish() && {
   Bytes& bytes = state_->bytes;
   state_->section(archive::kCorrections,
                   [&] { bytes.insert(bytes.end(), state_->corrections.begin(), state_->corrections.end()); });
+  if (const Bytes& labels = state_->labels; !labels.empty()) {
+    state_->section(archive::kLabels, [&] { bytes.insert(bytes.end(), labels.begin(), labels.end()); });
+  }
   state_->section(archive::kEnd, [&] { append_le(bytes, state_->sections); });
   if (bytes.size() > kMaxArchiveBytes) return archive::too_large(std::to_string(kMaxArchiveBytes) + " bytes");
   return std::move(bytes);
@@ -213,6 +229,19 @@ Result<MapArchive> read_map_archive(ByteSpan file, const MapArchiveOptions& opti
   }
   if (!file.empty()) return malformed("there is more behind its end; copy it again");
   return std::move(reader).result();
+}
+
+Result<Bytes> labels_of_map_archive(ByteSpan file) {
+  if (file.size() > kMaxArchiveBytes) return archive::too_large(std::to_string(kMaxArchiveBytes) + " bytes");
+  if (auto fine = archive::take_file_head(file); !fine) return tl::unexpected(fine.error());
+  for (Bytes labels;;) {
+    const auto section = archive::take_section(file);
+    if (!section) return tl::unexpected(section.error());
+    if (section->tag == archive::kEnd) return labels;
+    if (section->tag != archive::kLabels) continue;
+    if (section->version != archive::kVersion) return malformed("its labels were saved by a newer program; run that");
+    labels.assign(section->content.begin(), section->content.end());
+  }
 }
 
 std::int64_t loaded_incarnation(ByteSpan file, std::string_view request_id) {

@@ -44,6 +44,7 @@ struct MapArchive {
   double resolution = 0.0;              ///< of all layers and voxels, metres
   std::vector<SavedLayer> layers;       ///< by ascending agent, each once
   std::vector<Correction> corrections;  ///< by ascending revision
+  Bytes labels;                         ///< a section that is semantic's to read; empty: there is none
 };
 
 /// Writes a file section by section: of the layers nothing is kept but their bytes. Equal content has equal bytes,
@@ -62,6 +63,8 @@ class MapArchiveWriter {
   [[nodiscard]] Result<void> add(const LayerHead& head, const BrickMap& bricks);
   /// In the order of their revisions. Of a zone's author, time and revision those of the correction are taken.
   [[nodiscard]] Result<void> add(const Correction& correction);
+  /// The labels, as semantic wrote them. @pre not empty; called once at most.
+  void add_labels(ByteSpan section);
   /// The whole file. Refused: kTooLarge.
   [[nodiscard]] Result<Bytes> finish() &&;
 
@@ -85,6 +88,10 @@ struct MapArchiveOptions {
 
 /// Incarnations of agents that were loaded are this or greater; those that are counted by time are less.
 inline constexpr std::int64_t kLoadedIncarnation = std::int64_t{1} << 62;
+
+/// The section of the labels alone, of a file whose other sections somebody else looks at; empty: it has none. Refused:
+/// as by read_map_archive, for that much.
+[[nodiscard]] Result<Bytes> labels_of_map_archive(ByteSpan file);
 
 /// What all agents that a request loads from a file have as their incarnation. Whoever reads the same file for the same
 /// request computes the same: kLoadedIncarnation plus the low 62 bits of XXH3_64bits_withSeed(request id,

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "core/correction_check.hpp"
+#include "core/map_archive_fields.hpp"
 #include "core/map_archive_parts.hpp"
-#include "core/voxel_boxes.hpp"
 
 namespace concord::archive {
 namespace {
@@ -21,9 +21,6 @@ constexpr std::array kZoneKinds{Zone::Kind::kNoGo, Zone::Kind::kAllowContact};
 constexpr std::array kZoneKindsOnTerms{Zone::Kind::kNoGo, Zone::Kind::kAllowContact, Zone::Kind::kCostly,
                                        Zone::Kind::kCorridor};
 
-static_assert(kMaxVoxel == 1 << 15, "voxels are written in 16 bits");
-constexpr std::size_t kBoxBytes = 6 * 2;
-
 /// An enum as its place in a list, from 1.
 template <class Enum, std::size_t size>
 void append_one_of(Bytes& out, const std::array<Enum, size>& all, Enum value) {
@@ -36,67 +33,6 @@ Enum read_one_of(FieldReader& in, const std::array<Enum, size>& all) {
   if (place >= 1 && place <= size) return all[place - 1];
   in.fail();
   return all[0];
-}
-
-template <int size>
-void append_vector(Bytes& out, const Eigen::Matrix<double, size, 1>& p) {
-  for (int i = 0; i < size; ++i) append_real(out, p[i]);
-}
-
-template <int size>
-Eigen::Matrix<double, size, 1> read_vector(FieldReader& in) {
-  Eigen::Matrix<double, size, 1> p;
-  for (int i = 0; i < size; ++i) p[i] = in.real();
-  return p;
-}
-
-/// To the bit: a quaternion would give a map that differs in voxels at an edge.
-void append_transform(Bytes& out, const Transform& T) {
-  for (int row = 0; row < 3; ++row) append_vector<3>(out, T.linear().row(row).transpose());
-  append_vector<3>(out, T.translation());
-}
-
-Transform read_transform(FieldReader& in) {
-  Transform T = Transform::Identity();
-  for (int row = 0; row < 3; ++row) T.linear().row(row) = read_vector<3>(in).transpose();
-  T.translation() = read_vector<3>(in);
-  return T;
-}
-
-void append_voxels(Bytes& out, const std::vector<VoxelIndex>& voxels) {
-  const std::vector<VoxelBox> boxes = to_boxes(voxels);
-  append_le(out, static_cast<std::uint32_t>(boxes.size()));
-  for (const VoxelBox& box : boxes) {
-    for (const VoxelIndex v : {box.min, box.max}) {
-      for (const std::int32_t c : {v.x, v.y, v.z}) append_le(out, static_cast<std::int16_t>(c));
-    }
-  }
-}
-
-VoxelIndex read_voxel(FieldReader& in) {
-  VoxelIndex v;
-  v.x = in.integer<std::int16_t>();
-  v.y = in.integer<std::int16_t>();
-  v.z = in.integer<std::int16_t>();
-  return v;
-}
-
-/// Refused: boxes that to_boxes does not make (kMalformed), too many voxels (kTooLarge).
-Result<std::vector<VoxelIndex>> read_voxels(FieldReader& in, std::uint64_t most) {
-  const auto count = in.integer<std::uint32_t>();
-  if (!in.ok() || count > in.rest().size() / kBoxBytes) return malformed("an edit is cut short; save it again");
-  if (count == 0) return std::vector<VoxelIndex>();
-  std::vector<VoxelBox> boxes(count);
-  for (VoxelBox& box : boxes) {
-    box.min = read_voxel(in);
-    box.max = read_voxel(in);
-  }
-  auto voxels = expand(boxes, static_cast<std::int64_t>(most));
-  if (!voxels && voxels.error().code == Code::kTooLarge) {
-    return refuse(Code::kTooLarge, "map file: its edits pin more voxels than can be");
-  }
-  if (!voxels || to_boxes(*voxels) != boxes) return malformed("an edit's voxels are none; save it again");
-  return voxels;
 }
 
 void append_form(Bytes& out, Form form) { append_le(out, static_cast<std::uint8_t>(form)); }

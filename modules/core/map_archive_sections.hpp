@@ -19,6 +19,7 @@ using Tag = std::array<char, 4>;
 inline constexpr Tag kLattice{'L', 'A', 'T', 'T'};
 inline constexpr Tag kLayer{'L', 'A', 'Y', 'R'};
 inline constexpr Tag kCorrections{'C', 'O', 'R', 'R'};
+inline constexpr Tag kLabels{'L', 'A', 'B', 'L'};
 inline constexpr Tag kEnd{'E', 'N', 'D', '.'};
 
 /// Of each section named above.

@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "core/octomap_writer.hpp"
+#include "store/handover.hpp"
+#include "store/whole_file.hpp"
 
 namespace concord {
 namespace {
@@ -11,6 +13,8 @@ namespace {
 /// Long after a client that waits for layers would have asked again.
 constexpr std::int64_t kKeepOpened = 60'000'000;
 constexpr std::int64_t kForgetPeriod = 10'000'000;
+/// Of a process that says its status each second: longer, and it does not run.
+constexpr std::int64_t kSilence = 3'500'000;
 
 }  // namespace
 
@@ -24,6 +28,8 @@ MapsNode::MapsNode(const NodeContext& context, const Parts& parts)
                          case MapRequest::Op::kLoad: return load(request);
                        }
                      });
+  listen<ProcessStatus>(context_.bus, context_.counters, context_.process, "out/status/semantic",
+                        [this](const std::string&, const ProcessStatus&) { semantic_heard_ = context_.bus.now(); });
   context_.bus.every(kForgetPeriod, [this] {
     if (opened_ && context_.bus.now() - opened_->asked >= kKeepOpened) opened_.reset();
   });
@@ -35,8 +41,9 @@ void MapsNode::save(const MapRequest& request) {
   if (parts_.people_node.repeat(kRequests, request.id, content)) return;
   const auto bytes = write(request);
   if (!bytes) return answers_.give(replies_.denied(kRequests, request.id, bytes.error()), content, request.utime);
-  const std::string file = request.map + "." + request.format;
-  answers_.give(replies_.granted(request.id, parts_.map.revision(), *bytes, "saved " + file), content);
+  std::string words = "saved " + request.map + "." + request.format;
+  if (request.format == kNative && !semantic_runs()) words += ", without labels: semantic does not run";
+  answers_.give(replies_.granted(request.id, parts_.map.revision(), *bytes, words), content);
 }
 
 /// Returns the bytes written.
@@ -51,19 +58,31 @@ Result<std::int64_t> MapsNode::write(const MapRequest& request) {
   if (const auto may = maps_.check(request.map, request.format, request.overwrite); !may) {
     return tl::unexpected(may.error());
   }
-  const auto bytes = encoded(request.format);
+  const auto bytes = encoded(request);
   if (!bytes) return tl::unexpected(bytes.error());
   if (const auto saved = maps_.save(*bytes, request.map, request.format); !saved) return tl::unexpected(saved.error());
   return static_cast<std::int64_t>(bytes->size());
 }
 
-Result<Bytes> MapsNode::encoded(const std::string& format) {
-  if (format == kNative) return archived();
+Result<Bytes> MapsNode::encoded(const MapRequest& request) {
+  if (request.format == kNative) return archived(request.id);
   return write_octomap_file(parts_.map.layers().map(), context_.site.resolution,
-                            format == "ot" ? OctomapFormat::kFull : OctomapFormat::kBinary);
+                            request.format == "ot" ? OctomapFormat::kFull : OctomapFormat::kBinary);
 }
 
-Result<Bytes> MapsNode::archived() {
+bool MapsNode::semantic_runs() const { return semantic_heard_ && context_.bus.now() - *semantic_heard_ <= kSilence; }
+
+/// Semantic lays them there for each such request that it hears, and hears it when we do.
+Result<Bytes> MapsNode::labels_for(const std::string& request_id) const {
+  if (!semantic_runs()) return Bytes();
+  auto labels = read_whole_file(handover_file(context_.site.state, request_id), kMaxArchiveBytes);
+  if (labels || labels.error().code != Code::kNotFound) return labels;
+  return refuse(Code::kBusy, "the labels are being handed over; ask again");
+}
+
+Result<Bytes> MapsNode::archived(const std::string& request_id) {
+  const auto labels = labels_for(request_id);
+  if (!labels) return tl::unexpected(labels.error());
   MapArchiveWriter writer(context_.site.resolution);
   for (const auto& [id, layer] : parts_.map.layers().layers()) {
     const LayerHead head{id, context_.site.agent(id).kind, layer.frame_id, parts_.agents.incarnation(id), layer.weight};
@@ -71,6 +90,7 @@ Result<Bytes> MapsNode::archived() {
   }
   const auto read = parts_.store.for_each([&](const Correction& correction) { return writer.add(correction); });
   if (!read) return tl::unexpected(read.error());
+  if (!labels->empty()) writer.add_labels(*labels);
   return std::move(writer).finish();
 }
 

@@ -40,8 +40,10 @@ class MapsNode {
   void load(const MapRequest& request);
 
   [[nodiscard]] Result<std::int64_t> write(const MapRequest& request);
-  [[nodiscard]] Result<Bytes> encoded(const std::string& format);
-  [[nodiscard]] Result<Bytes> archived();
+  [[nodiscard]] Result<Bytes> encoded(const MapRequest& request);
+  [[nodiscard]] Result<Bytes> archived(const std::string& request_id);
+  [[nodiscard]] bool semantic_runs() const;
+  [[nodiscard]] Result<Bytes> labels_for(const std::string& request_id) const;
 
   /// A native file that is being loaded, between its request and the arrival of its layers: it is read once.
   struct Opened {
@@ -71,6 +73,7 @@ class MapsNode {
   Replies replies_;
   MapStore maps_;
   RecentAnswers answers_;
+  std::optional<std::int64_t> semantic_heard_;  ///< when, last
   std::optional<Opened> opened_;
 };
 

@@ -15,7 +15,7 @@
 #include <unistd.h>
 
 #include "agent/submap_publisher.hpp"
-#include "bus/messages.hpp"
+#include "bus/messages_label.hpp"
 #include "core/compose.hpp"
 #include "process.hpp"
 #include "station.hpp"
@@ -27,6 +27,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kRounds = 2000;
 constexpr int kWarmUp = 200;
+constexpr int kLabelRounds = 200;
 constexpr double kResolution = 0.05;
 constexpr int kPatience = 5000;  // milliseconds
 const char* const kPrograms = CONCORD_PROGRAMS;
@@ -123,8 +124,20 @@ class Person {
     return timed("in/edit", encode(request), [&] { return version_ > before; });
   }
 
+  /// Until whoever does it has answered. @throws std::runtime_error if that is no.
+  Answer ask(const char* channel, const Bytes& bytes, const std::string& id, double& took) {
+    took = timed(channel, bytes, [&] { return last_.id == id && last_.code != "BUSY"; });
+    if (!last_.ok) throw std::runtime_error(id + ": " + last_.message);
+    return last_;
+  }
+
  private:
   void listen() {
+    const auto take = [](const lcm::ReceiveBuffer* buffer, const std::string&, Answer* last) {
+      const auto answer = decode<Answer>({static_cast<const std::uint8_t*>(buffer->data), buffer->data_size});
+      if (answer) *last = *answer;
+    };
+    lcm_->subscribeFunction<Answer*>(kAnswers, take, &last_);
     const auto count = [](const lcm::ReceiveBuffer*, const std::string&, int* pongs) { ++*pongs; };
     lcm_->subscribeFunction<int*>("bench/pong", count, &pongs_);
     const auto note_version = [](const lcm::ReceiveBuffer* buffer, const std::string&, std::int64_t* version) {
@@ -147,6 +160,7 @@ class Person {
   std::unique_ptr<lcm::LCM> lcm_;
   int pongs_ = 0;
   std::int64_t version_ = 0;
+  Answer last_;
 };
 
 /// A robot that has sent all it has seen.
@@ -230,6 +244,72 @@ EditRequest one_voxel(int number, VoxelIndex voxel) {
 Latency latency_of(std::vector<double> samples) {
   std::ranges::sort(samples);
   return {samples[samples.size() / 2], samples[samples.size() * 99 / 100]};
+}
+
+namespace {
+
+/// Half a brick of the map.
+LabelRequest label_half(const std::vector<BrickIndex>& bricks, std::int32_t number, std::int32_t classes) {
+  const VoxelIndex low = origin_of(bricks[static_cast<std::size_t>(number / 2) % bricks.size()]);
+  const std::int32_t z = low.z + number % 2 * 4;
+  LabelRequest request;
+  request.id = "bench-" + std::to_string(number);
+  request.author = "bench";
+  request.name = "class " + std::to_string(number % classes);
+  request.shape = VoxelList{kResolution, {{{low.x, low.y, z}, {low.x + 7, low.y + 7, z + 3}}}};
+  return request;
+}
+
+}  // namespace
+
+LabelLatency measure_labels(std::int64_t voxels, std::int32_t instances, std::int32_t classes,
+                            const std::filesystem::path& state) {
+  const Folder folder(state);
+  const test::Host host("bench");
+  host.run("ip route add 224.0.0.0/4 dev lo");
+  const std::string site = folder.path() / "site.yaml";
+  std::vector<std::unique_ptr<test::Process>> processes;
+  for (const char* name : {"ingest", "merge", "semantic"}) {
+    const std::vector<std::string> command{std::string(kPrograms) + "/concord-" + name, "--site", site};
+    processes.push_back(std::make_unique<test::Process>(host, command, folder.path() / "log"));
+  }
+  const Echo echo(host);
+  const BrickMap map = made_up_map(voxels);
+  std::vector<std::unique_ptr<Robot>> robots;
+  robots.push_back(std::make_unique<Robot>(host, "robot1", Transform::Identity(), map));
+  wait_for(host, map, robots);
+
+  Person person(host);
+  const std::vector<BrickIndex> bricks = map.sorted_bricks();
+  double took = 0;
+  std::int32_t number = 0;
+  const auto label = [&] {
+    const LabelRequest request = label_half(bricks, number++, classes);
+    person.ask("in/label", encode(request), request.id, took);
+    robots[0]->bus().spin_once(0);
+    return request;
+  };
+  while (number < instances) label();
+  std::vector<double> round_trips, labels, take_offs, removals;
+  for (int i = 0; i < kLabelRounds; ++i) {
+    LabelRequest request = label_half(bricks, number, classes);
+    round_trips.push_back(person.ping(encode(request)));
+    label();
+    labels.push_back(took);
+    const auto change = [&](LabelRequest::Op op, const char* mark, std::int32_t of) {
+      request.op = op;
+      request.id = mark + std::to_string(number);
+      // The first of a class is its first instance; each class comes in its turn.
+      request.of = {static_cast<ClassId>(of % classes + 1), static_cast<std::uint32_t>(of / classes + 1)};
+      person.ask("in/label", encode(request), request.id, took);
+    };
+    change(LabelRequest::Op::kTakeOff, "off-", number - 1);
+    take_offs.push_back(took);
+    change(LabelRequest::Op::kDelete, "gone-", i);
+    removals.push_back(took);
+  }
+  return {static_cast<std::int64_t>(map.known_count()), latency_of(round_trips), latency_of(labels),
+          latency_of(take_offs), latency_of(removals)};
 }
 
 EditLatency measure_edits(const EditCase& given, const std::filesystem::path& state) {

@@ -34,4 +34,14 @@ struct EditCase {
 /// @throws std::runtime_error when the stack does not come up or does not answer.
 [[nodiscard]] EditLatency measure_edits(const EditCase& given, const std::filesystem::path& state);
 
+struct LabelLatency {
+  std::int64_t voxels = 0;          ///< known, in the map
+  Latency round_trip;               ///< as above
+  Latency label, take_off, remove;  ///< from asking to the answer; `remove` takes the voxels out of the map
+};
+
+/// The same for labels of 20 to 40 voxels, after so many instances of so many classes were labelled.
+[[nodiscard]] LabelLatency measure_labels(std::int64_t voxels, std::int32_t instances, std::int32_t classes,
+                                          const std::filesystem::path& state);
+
 }  // namespace concord::bench

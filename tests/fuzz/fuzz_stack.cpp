@@ -11,6 +11,7 @@
 #include "merge/merge_node.hpp"
 #include "must.hpp"
 #include "planner/planner_node.hpp"
+#include "semantic/semantic_node.hpp"
 
 // Not one message but what a stack makes of many: almost good ones, in any order, at any time, on the channels that
 // they belong to.
@@ -56,6 +57,18 @@ const char* channel_of(const std::string& type) {
                                                                {"path_t", "out/path/robot1"},
                                                                {"answer_t", "out/answer"},
                                                                {"agents_t", "out/agents"},
+                                                               {"align_request_t", "in/align"},
+                                                               {"align_decision_t", "in/align_decision"},
+                                                               {"align_result_t", "out/align"},
+                                                               {"label_request_t", "in/label"},
+                                                               {"label_query_t", "in/label_query"},
+                                                               {"label_list_t", "out/label_list"},
+                                                               {"label_slots_t", "out/label_slots"},
+                                                               {"asset_request_t", "in/asset"},
+                                                               {"assets_t", "out/assets"},
+                                                               {"detection_t", "in/detection"},
+                                                               {"detection_decision_t", "in/detection_decision"},
+                                                               {"things_t", "out/things"},
                                                                {"status_t", "out/status/ingest"}};
   return kChannels.at(type);
 }
@@ -88,9 +101,9 @@ class Stack {
   /// Whatever was heard, all can be read again, and nothing that people made is lost.
   void restart() {
     wait(1'000'000);
-    const std::int64_t revision = counters_.get("edit_revision");
+    const std::int64_t revision = counters_.get("edit_revision"), labels = counters_.get("label_revision");
     start(bus_->now() + 1'000'000);
-    fuzz::must(counters_.get("edit_revision") >= revision);
+    fuzz::must(counters_.get("edit_revision") >= revision && counters_.get("label_revision") >= labels);
   }
 
  private:
@@ -99,12 +112,14 @@ class Stack {
         : ingest({bus, counters, site, "ingest", bus.now()}),
           merge({bus, counters, site, "merge", bus.now()}),
           planner({bus, counters, site, "planner", bus.now()}, std::launch::deferred),
+          semantic({bus, counters, site, "semantic", bus.now()}),
           robot(bus, counters, {"in/robot1", site.resolution, 5e6, bus.now()}, submap) {
       robot.begin("odom");
     }
     IngestNode ingest;
     MergeNode merge;
     PlannerNode planner;
+    SemanticNode semantic;
     BrickSender robot;
   };
 

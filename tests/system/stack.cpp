@@ -29,7 +29,8 @@ std::string last_lines(const std::filesystem::path& file, std::size_t bytes) {
 
 Stack::Stack(Network& network, const std::string& settings) : folder_(make_folder()) {
   std::ofstream(folder_ / "site.yaml") << "lcm_url: " << kUrl << "\nbeyond_host: true\nstate: state\n" << settings;
-  for (const char* process : {"ingest", "merge", "align", "planner"}) hosts_[process] = &network.add(process);
+  for (const char* process : {"ingest", "merge", "align", "planner", "semantic"})
+    hosts_[process] = &network.add(process);
 }
 
 Stack::~Stack() {

@@ -197,6 +197,27 @@ TEST_F(PlannerOnTheBus, AskingForAGoalInANoGoZoneIsAnsweredWithItsName) {
   EXPECT_NE(answers_[0].message.find("'Schweißzelle 2'"), std::string::npos) << answers_[0].message;
 }
 
+TEST_F(PlannerOnTheBus, ZonesAroundLabelledThingsHoldBesidePeoplesOwn) {
+  ListSender<Zone> labels(bus_, counters_, "out/label_zones", 5e6);
+  start_planner(kStart);
+  map_sender_.begin("map");
+  run_seconds(2);
+  labels.set({zone("fork lift 2", Zone::Kind::kNoGo, {1.8, -1}, {2, 3})});
+  run_seconds(0.2);
+  ask("p1", Eigen::Vector2d(0.4, 0.8), false);
+  EXPECT_EQ(answers_.back().code, "NO_ZONES");  // people's are still to come
+  say_zones({zone("press", Zone::Kind::kNoGo, {1.4, 1.2}, {1.6, 1.6})});
+  run_seconds(0.2);
+  ask("p2", Eigen::Vector2d(0.4, 0.8), false);
+  EXPECT_EQ(answers_.back().code, "NO_VALID_PATH");
+  EXPECT_NE(answers_.back().message.find("'fork lift 2'"), std::string::npos) << answers_.back().message;
+  labels.set({});
+  run_seconds(0.2);
+  ask("p3", Eigen::Vector2d(0.4, 0.8), false);
+  EXPECT_EQ(answers_.back().code, "OK");
+  EXPECT_EQ(counters_.get("zones"), 1);
+}
+
 TEST_F(PlannerOnTheBus, ALatePlannerHearsTheZonesThatWereSaidBefore) {
   say_zones({zone("gate", Zone::Kind::kNoGo, {1.8, -1}, {2, 3})});
   run_seconds(5);

@@ -10,8 +10,8 @@ namespace {
 constexpr std::int64_t kNow = 1'000'000'000;
 
 /// robot1 and robot2 in the map, and robot3, which is not.
-AlignLayers three_layers() {
-  AlignLayers layers;
+AgentLayers three_layers() {
+  AgentLayers layers;
   for (const char* agent : {"robot1", "robot2", "robot3"}) {
     layers[agent].frame_id = "frame1";
     layers[agent].revision = 7;
@@ -28,7 +28,7 @@ Alignment accepted_alignment() {
   return out;
 }
 
-AlignTask task_of(const std::string& id, const AlignLayers& layers) {
+AlignTask task_of(const std::string& id, const AgentLayers& layers) {
   AlignTask task;
   task.id = id;
   task.used_source = {"robot2", "frame1", 7};
@@ -37,7 +37,7 @@ AlignTask task_of(const std::string& id, const AlignLayers& layers) {
   return task;
 }
 
-AlignTask recheck_of(const std::string& id, const AlignLayers& layers) {
+AlignTask recheck_of(const std::string& id, const AgentLayers& layers) {
   AlignTask task = task_of(id, layers);
   task.is_recheck = true;
   task.T_target_source = layers.at("robot2").T_map_agent;
@@ -47,7 +47,7 @@ AlignTask recheck_of(const std::string& id, const AlignLayers& layers) {
 class Desk : public ::testing::Test {
  protected:
   AlignDesk desk_;
-  AlignLayers layers_ = three_layers();
+  AgentLayers layers_ = three_layers();
   std::int64_t now_ = kNow;
 
   void ask(const std::string& id) {
@@ -137,7 +137,7 @@ TEST_F(Desk, IsAcceptedOnceMergeAgrees) {
 
 TEST(DriftWatch, LooksAgainAtWhatChangedWhileItLooked) {
   DriftWatch watch;
-  AlignLayers layers = three_layers();
+  AgentLayers layers = three_layers();
   std::int64_t now = kNow;
   const auto look = [&](const auto& meanwhile) {
     const auto agent = watch.next(layers, now);
@@ -164,7 +164,7 @@ TEST(DriftWatch, LooksAgainAtWhatChangedWhileItLooked) {
 
 TEST(DriftWatch, PausesNineteenTimesAsLongAsItLooked) {
   DriftWatch watch;
-  const AlignLayers layers = three_layers();
+  const AgentLayers layers = three_layers();
   watch.looked_at(DriftWatch::begin("robot1", layers), 1'000'000, kNow);
   EXPECT_FALSE(watch.next(layers, kNow + 18'999'999));
   EXPECT_EQ(watch.next(layers, kNow + 19'000'000), "robot2");

@@ -11,10 +11,10 @@ namespace concord::test {
 namespace {
 
 /// Two who were aligned rightly, of whom one has slipped since.
-AlignLayers slipped(const Transform& T_slip) {
-  AlignLayers layers;
+AgentLayers slipped(const Transform& T_slip) {
+  AgentLayers layers;
   const auto add = [&](const std::string& agent, const Points& points, const Transform& T_map_agent) {
-    AlignLayer& layer = layers[agent];
+    AgentLayer& layer = layers[agent];
     layer.frame_id = "frame1";
     layer.map = voxels_of(points);
     layer.revision = 1;

@@ -1,5 +1,9 @@
 #include "message_samples.hpp"
 
+#include "bus/messages_asset.hpp"
+#include "bus/messages_detection.hpp"
+#include "bus/messages_label.hpp"
+
 namespace concord::test {
 namespace {
 
@@ -42,6 +46,12 @@ EditRequest moved(EditRequest edit) {
 const Box kBox{{-1, 0, 0}, {1, 2.5, 3}};
 const OrientedBox kOriented{some_transform(), {1, 2, 3}};
 const Prism kPrism{{{0, 0}, {4, 0}, {4, 3}, {1, 1}}, -0.5, 2};
+
+LabelRequest label(LabelRequest::Op op, Shape shape = VoxelList{}) {
+  LabelRequest out{"n-1", "Zoë", op, "chair", {3, 4'000}, 7, "", std::move(shape), {"headset", "h-1"}, kTime};
+  if (op == LabelRequest::Op::kUndo) out.correction_id = "n-0";
+  return out;
+}
 
 Zone zone(const std::string& name, Volume volume) {
   return {name, Zone::Kind::kAllowContact, std::move(volume), some_transform(), "Zoë", kTime, 5, 0, 0};
@@ -192,6 +202,25 @@ const std::vector<MessageSample>& message_samples() {
                                               {{-9, -9, -9}, {-8, -8, -8}, 1, {}}}}),
       sample("zones_t", ListPart<Zone>{0xFFEEDDCCBBAA9988, 1, 2, {zone("a", kBox), zone("b", kPrism)}, {}}),
       sample("leases_t", ListPart<Lease>{5, 0, 1, {{"l-1", "Zoë", kOriented, some_transform(), kTime}}, {}}),
+      sample("label_request_t", label(LabelRequest::Op::kLabel, kPrism)),
+      sample("label_request_t", label(LabelRequest::Op::kRestore, VoxelList{0.05, {{{-3, 0, 1}, {5, 0, 1}}}})),
+      sample("label_request_t", label(LabelRequest::Op::kDelete)),
+      sample("label_request_t", label(LabelRequest::Op::kUndo)),
+      sample("asset_request_t",
+             AssetRequest{"s-1", "Zoë", AssetRequest::Op::kInject, "pallet", "", some_transform(), kTime}),
+      sample("asset_request_t",
+             AssetRequest{"s-2", "Zoë", AssetRequest::Op::kMove, "", "s-1", some_transform(), kTime}),
+      sample("asset_request_t",
+             AssetRequest{"s-3", "Zoë", AssetRequest::Op::kDelete, "", "s-1", Transform::Identity(), kTime}),
+      sample("assets_t", ListPart<Asset>{7, 0, 1, {{"pallet", "Palette", "pallet.glb", 0.001, 12'345}}, {}}),
+      sample("detection_t",
+             Detection{"v-1", "hmd", "fork lift", "target 7", 0.75, some_transform(), {"headset", "h-1"}, kTime}),
+      sample("detection_decision_t", DetectionDecision{"v-2", "Zoë", DetectionDecision::Op::kDrop, 12, kTime}),
+      sample("things_t",
+             ListPart<Thing>{7, 0, 1, {{12, "lift", "fork lift", 0.75, 3, kTime, "hmd", some_transform(), "v-2"}}, {}}),
+      sample("label_query_t", LabelQuery{"n-2", LabelQuery::Kind::kWithin, "chair", {1, 2, -3}, 4.5}),
+      sample("label_list_t", LabelList{"n-2", 1, 2, {{{3, 1}, "chair", 50, {-4, 0, 0}, {9, 9, 9}, {0.5, 1, 2}}}}),
+      sample("label_slots_t", ListPart<LabelSlot>{7, 0, 1, {{0, {3, 1}, "chair"}, {65'534, {9, 2}, "Tür"}}, {}}),
       sample("list_digest_t", ListDigest{0xFFEEDDCCBBAA9988, 3}),
       sample("list_request_t", ListRequest{0xFFEEDDCCBBAA9988}),
       sample("agent_request_t", AgentRequest{"r-2", "robot1", AgentRequest::Op::kRemove}),

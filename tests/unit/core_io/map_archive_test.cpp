@@ -140,7 +140,7 @@ TEST(MapArchive, BytesAreAsDocumented) {
                        0,    0,   0,   0,   0,   0,   0,   0,                                              //
                        'E',  'N', 'D', '.', 1,   0,   0,   0,   8,    0,    0,    0,    0, 0, 0,    0,     //
                        0,    0,   0,   0,   0,   0,   0,   0,   2,    0,    0,    0,    0, 0, 0,    0};
-  Bytes file = write({0.5, {}, {}});
+  Bytes file = write({0.5, {}, {}, {}});
   ASSERT_EQ(file.size(), expected.size());
   for (const std::size_t checksum : {32, 64, 88}) std::fill_n(file.begin() + static_cast<int>(checksum), 8, 0);
   EXPECT_EQ(file, expected);
@@ -164,11 +164,11 @@ TEST(MapArchive, BricksNeedNotBeKept) {
 }
 
 TEST(MapArchive, UnknownSectionsArePassedOver) {
-  const auto labels = [](Bytes& out) { out.push_back(42); };
+  const auto note = [](Bytes& out) { out.push_back(42); };
   const Bytes file = FileOf()
-                         .section({'N', 'O', 'T', 'E'}, labels)
+                         .section({'N', 'O', 'T', 'E'}, note)
                          .lattice()
-                         .section({'L', 'A', 'B', 'L'}, labels, 77)
+                         .section({'P', 'I', 'C', 'T'}, note, 77)
                          .layer(kRobot, 1, 1, one_brick())
                          .corrections({correction(1, "e", edit_of({{1, 2, 3}}))})
                          .section({0, 0, 0, 0}, [](Bytes&) {})
@@ -357,7 +357,7 @@ TEST(MapArchive, TheWriterRefusesWhatCouldNotBeRead) {
 
 TEST(MapArchive, LoadedAgentsHaveAnIncarnationOfTheirFileAndRequest) {
   const Bytes file = write(small_archive());
-  const Bytes other = write({0.5, {}, {}});
+  const Bytes other = write({0.5, {}, {}, {}});
   const std::int64_t incarnation = loaded_incarnation(file, "q1");
   EXPECT_GE(incarnation, kLoadedIncarnation);
   EXPECT_EQ(loaded_incarnation(file, "q1"), incarnation);

@@ -1,4 +1,4 @@
-#include "align/layers_node.hpp"
+#include "bus/layers_node.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -55,7 +55,7 @@ BrickReceiver* LayersNode::stream_of_channel(const std::string& channel, bool ma
 std::unique_ptr<BrickReceiver> LayersNode::make_receiver(const std::string& id) {
   BrickReceiver::Events events;
   events.on_frame = [this, id](const std::string& frame_id) {
-    AlignLayer& layer = layers_[id] = {};  // a transform holds for the frame it was found in
+    AgentLayer& layer = layers_[id] = {};  // a transform holds for the frame it was found in
     layer.frame_id = frame_id;
   };
   events.on_brick = [this, id](BrickIndex index, Brick brick) { layers_[id].map.set(index, std::move(brick)); };
@@ -75,7 +75,7 @@ void LayersNode::on_agents(const AgentList& list) {
   }
 }
 
-const AlignLayers& LayersNode::now() {
+const AgentLayers& LayersNode::now() {
   // Not while a stream says that it has ended: it is in use then.
   std::erase_if(streams_, [](const auto& entry) { return entry.second->heard() && entry.second->frame_id().empty(); });
   for (auto& [id, layer] : layers_) {

@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
-#include "align/align_task.hpp"
 #include "bus/brick_stream.hpp"
 #include "bus/process.hpp"
+#include "core/agent_layer.hpp"
 
 namespace concord {
 
@@ -19,7 +19,7 @@ class LayersNode {
   LayersNode& operator=(const LayersNode&) = delete;
 
   /// As they are now.
-  [[nodiscard]] const AlignLayers& now();
+  [[nodiscard]] const AgentLayers& now();
   /// Whoever merge knows to have sent a submap is here, so that who is not here is nowhere; or that takes too long.
   [[nodiscard]] bool settled() const;
   /// Whether anybody is in the map, be it without a submap; nullopt: merge has not said it yet.
@@ -32,7 +32,7 @@ class LayersNode {
 
   NodeContext context_;
   std::int64_t start_;
-  AlignLayers layers_;
+  AgentLayers layers_;
   std::optional<AgentList> list_;  ///< the last
   std::map<std::string, std::unique_ptr<BrickReceiver>> streams_;
 };

@@ -1,0 +1,131 @@
+// Translators of assets: core/assets.hpp.
+
+#include "bus/messages_asset.hpp"
+
+#include <cmath>
+
+#include <concord/asset_request_t.hpp>
+#include <concord/assets_t.hpp>
+
+#include "bus/translate_shape.hpp"
+
+namespace concord {
+namespace {
+
+using wire::bad;
+
+constexpr std::int64_t kFileLength = 200;
+constexpr std::size_t kBeforeItems = 8 + 8 + 8 + 4 + 4 + 4;
+
+Result<std::string> name_of(const std::string& name) {
+  if (is_name(name)) return name;
+  return refuse(Code::kBadName, std::string("an asset's name must be ") + kNameRule);
+}
+
+std::int8_t to_wire(AssetRequest::Op op) {
+  switch (op) {
+    case AssetRequest::Op::kInject: return asset_request_t::INJECT;
+    case AssetRequest::Op::kMove: return asset_request_t::MOVE;
+    case AssetRequest::Op::kDelete: return asset_request_t::DELETE;
+  }
+  return 0;
+}
+
+Result<AssetRequest::Op> op_of(std::int8_t op) {
+  switch (op) {
+    case asset_request_t::INJECT: return AssetRequest::Op::kInject;
+    case asset_request_t::MOVE: return AssetRequest::Op::kMove;
+    case asset_request_t::DELETE: return AssetRequest::Op::kDelete;
+    default: return refuse(Code::kBadRequest, "op must be INJECT, MOVE or DELETE");
+  }
+}
+
+Result<std::string> empty(const std::string& text, const char* why) {
+  if (text.empty()) return text;
+  return refuse(Code::kBadRequest, why);
+}
+
+Result<std::string> injection_of(const std::string& id) {
+  if (is_request_id(id)) return id;
+  return refuse(Code::kBadRequest, std::string("of must be ") + kIdRule);
+}
+
+Decoded<Asset> from_wire(const asset_t& in) {
+  wire::Filling<Asset> out({}, {});
+  out.take(&Asset::name, name_of(in.name));
+  out.take(&Asset::class_name, wire::title_of(in.class_name));
+  if (!is_printable(in.file)) out.require(refuse(Code::kBadName, "an asset's file has a name that is none"));
+  out.take(&Asset::file, Result<std::string>(in.file));
+  if (!(in.unit > 0) || !std::isfinite(in.unit)) out.require(refuse(Code::kNotFinite, "an asset's unit is none"));
+  out.take(&Asset::unit, Result<double>(in.unit));
+  out.take(&Asset::gltf_bytes, wire::not_negative(in.gltf_bytes, "gltf_bytes"));
+  return out.done();
+}
+
+}  // namespace
+
+Bytes encode(const AssetRequest& value) {
+  auto out = wire::asked_by<asset_request_t>(value, value.utime);
+  out.op = to_wire(value.op);
+  out.asset = value.asset;
+  out.of = value.of;
+  out.T_map_asset = wire::to_wire(value.T_map_asset);
+  return wire::to_bytes(out);
+}
+
+template <>
+Decoded<AssetRequest> decode<AssetRequest>(std::span<const std::uint8_t> bytes) {
+  static constexpr WireField kLayout[] = {record(wire::kAsker), fixed(1), text(wire::kNameLength),
+                                          text(wire::kIdLength), fixed(wire::kTransformBytes)};
+  const auto in = wire::read_asked<asset_request_t>(bytes, kLayout);
+  if (!in) return tl::unexpected(in.error());
+  auto out = wire::asked_by<AssetRequest>(*in);
+  if (in->request_id.size() > kMostAssetId)
+    out.require(refuse(Code::kBadRequest, "request id must be at most " + std::to_string(kMostAssetId) + " bytes"));
+  out.take(&AssetRequest::op, op_of(in->op));
+  const bool injects = in->op == asset_request_t::INJECT;
+  out.take(&AssetRequest::asset, injects ? name_of(in->asset) : empty(in->asset, "asset is for INJECT"));
+  out.take(&AssetRequest::of, injects ? empty(in->of, "of is for MOVE and DELETE") : injection_of(in->of));
+  out.take(&AssetRequest::T_map_asset, wire::from_wire(in->T_map_asset));
+  return out.done();
+}
+
+Bytes encode(const ListPart<Asset>& value, std::int64_t utime) {
+  assets_t out;
+  out.utime = utime;
+  out.content = static_cast<std::int64_t>(value.content);
+  out.part = value.part;
+  out.parts = value.parts;
+  out.count = static_cast<std::int32_t>(value.items.size());
+  for (const Asset& asset : value.items) {
+    auto& one = out.assets.emplace_back();
+    one.name = asset.name;
+    one.class_name = asset.class_name;
+    one.file = asset.file;
+    one.unit = asset.unit;
+    one.gltf_bytes = asset.gltf_bytes;
+  }
+  return wire::to_bytes(out);
+}
+
+template <>
+Decoded<ListPart<Asset>> decode<ListPart<Asset>>(std::span<const std::uint8_t> bytes) {
+  static constexpr WireField kAsset[] = {text(wire::kNameLength), text(wire::kTitleLength), text(kFileLength),
+                                         fixed(8 + 8)};
+  static constexpr WireField kLayout[] = {fixed(8 + 8 + 4 + 4), count(kMostInPart), records(kAsset)};
+  const auto in = wire::from_bytes<assets_t>(bytes, kLayout);
+  if (!in) return bad(in.error());
+  if (auto fine = wire::check_part(in->part, in->parts, static_cast<std::int64_t>(kMaxAssets)); !fine)
+    return bad(fine.error());
+  ListPart<Asset> out{static_cast<std::uint64_t>(in->content), in->part, in->parts, {}, {}};
+  for (const auto& one : in->assets) {
+    auto value = from_wire(one);
+    if (!value) return tl::unexpected(value.error());
+    out.items.push_back(std::move(*value));
+  }
+  const auto encoded = bytes.subspan(kBeforeItems);
+  out.encoded.assign(encoded.begin(), encoded.end());
+  return out;
+}
+
+}  // namespace concord

@@ -1,0 +1,43 @@
+#include "cli/label_list.hpp"
+
+#include <array>
+
+#include "bus/messages_label.hpp"
+#include "cli/extent.hpp"
+#include "cli/numbers.hpp"
+#include "cli/parts.hpp"
+#include "cli/table.hpp"
+
+namespace concord {
+
+tl::expected<std::vector<LabelInstance>, Failure> request_labels(Live& live, LabelQuery query) {
+  query.id = live.new_id();
+  const auto parts = ask_in_parts<LabelList>(live, Respondent{"in/label_query", "semantic", "out/label_list"}, query);
+  if (!parts) return tl::unexpected(parts.error());
+  std::vector<LabelInstance> all;
+  for (const LabelList& part : *parts) all.insert(all.end(), part.instances.begin(), part.instances.end());
+  return all;
+}
+
+nlohmann::json to_json(const LabelInstance& instance, double resolution) {
+  const Eigen::Vector3d& c = instance.centroid;
+  nlohmann::json out = {{"class", instance.name},
+                        {"label", instance.of.label},
+                        {"instance", instance.of.instance},
+                        {"voxels", instance.voxels},
+                        {"centroid", std::array<double, 3>{c.x(), c.y(), c.z()}},
+                        {"box", nullptr}};
+  if (instance.voxels > 0) out["box"] = to_json(extent(instance.min, instance.max, resolution));
+  return out;
+}
+
+std::string to_words(const std::vector<LabelInstance>& instances, double resolution) {
+  std::vector<std::vector<std::string>> rows;
+  for (const LabelInstance& one : instances) {
+    rows.push_back({one.name, std::to_string(one.of.instance), format_count(one.voxels) + " voxels",
+                    one.voxels > 0 ? to_words(extent(one.min, one.max, resolution)) : ""});
+  }
+  return format_table(rows, "lrrl");
+}
+
+}  // namespace concord

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "bus/brick_stream.hpp"
+#include "bus/layers_node.hpp"
+#include "bus/messages_label.hpp"
+#include "bus/process.hpp"
+#include "bus/replies.hpp"
+#include "bus/reply_queue.hpp"
+#include "semantic/assets_node.hpp"
+#include "semantic/detections_node.hpp"
+#include "semantic/label_files_node.hpp"
+#include "semantic/label_view.hpp"
+#include "semantic/labels.hpp"
+#include "semantic/margins_node.hpp"
+#include "semantic/semantic_store.hpp"
+
+namespace concord {
+
+/// The semantic process: hears the map and what people say of it; says which voxels show which label.
+class SemanticNode {
+ public:
+  /// @throws std::runtime_error if its store cannot be opened or was damaged.
+  explicit SemanticNode(const NodeContext& context);
+
+  [[nodiscard]] const LabelView& view() const { return view_; }
+
+ private:
+  void listen_to_the_map();
+  void restore();
+  void on_agents(const AgentList& list);
+  void on_request(const LabelRequest& request);
+  void on_delete(const LabelRequest& request);
+  void on_query(const LabelQuery& query);
+  [[nodiscard]] bool repeat(const LabelRequest& request, std::uint64_t content);
+  [[nodiscard]] Result<std::vector<VoxelIndex>> selected(const LabelRequest& request) const;
+  [[nodiscard]] Result<Transform> T_map_frame(const WorkFrame& frame) const;
+  [[nodiscard]] Result<Labels::What> check(const LabelRequest& request);
+  [[nodiscard]] Result<void> commit(const std::string& id, const std::string& author, std::uint64_t content,
+                                    Labels::What what);
+  [[nodiscard]] Result<void> commit(const std::vector<LabelCorrection>& corrections);
+  void grant(const std::string& id, const Labels::Made& made, const std::string& message);
+  void refresh(const BrickSet& touched);
+  void tell_slots();
+
+  NodeContext context_;
+  Replies replies_;
+  SemanticStore store_;
+  LayersNode layers_;
+  Labels labels_;
+  BrickMap map_;
+  LabelView view_;
+  BrickReceiver map_receiver_;
+  BrickSender label_stream_;
+  ListSender<LabelSlot> slot_list_;
+  ReplyQueue queue_;
+  std::map<std::string, AgentState> agents_;
+  BrickSet dirty_;  ///< the map changed there
+  bool has_new_slots_ = true;
+  bool begun_ = false;
+  AssetsNode assets_node_;
+  DetectionsNode detections_node_;
+  LabelFilesNode files_node_;
+  MarginsNode margins_node_;
+};
+
+}  // namespace concord

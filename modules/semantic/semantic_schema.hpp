@@ -1,0 +1,19 @@
+#pragma once
+
+namespace concord {
+
+/// semantic.db, schema by schema: what stands here was written by some release and is never changed.
+///
+/// `corrections` is what people did to the labels, in order, each as bytes (core/map_archive.md, "A label correction").
+/// `placements` is where the agents' frames that labels lie on were last: twelve little-endian 64-bit numbers, rotation
+/// row by row, translation.
+inline constexpr const char* kSemanticSchema[] = {
+    R"sql(
+CREATE TABLE site (resolution REAL NOT NULL);
+CREATE TABLE corrections (revision INTEGER PRIMARY KEY, id TEXT NOT NULL UNIQUE, correction BLOB NOT NULL);
+CREATE TABLE placements (agent TEXT NOT NULL, frame_id TEXT NOT NULL, T_map_agent BLOB NOT NULL,
+  PRIMARY KEY (agent, frame_id));
+)sql",
+};
+
+}  // namespace concord

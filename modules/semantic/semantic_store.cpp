@@ -1,0 +1,89 @@
+#include "semantic/semantic_store.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "bus/site.hpp"
+#include "core/map_archive_fields.hpp"
+#include "semantic/label_section.hpp"
+#include "semantic/semantic_schema.hpp"
+
+namespace concord {
+namespace {
+
+tl::unexpected<Error> damaged(const std::string& what) {
+  return refuse(Code::kIo, "semantic.db: " + what + "; move the file away and bring back a backup");
+}
+
+}  // namespace
+
+SemanticStore::SemanticStore(const std::filesystem::path& file, double resolution)
+    : database_(file, kSemanticSchema),
+      put_(database_.prepare("INSERT INTO corrections VALUES (?,?,?)")),
+      place_(database_.prepare("INSERT OR REPLACE INTO placements VALUES (?,?,?)")) {
+  check_resolution(resolution);
+}
+
+void SemanticStore::check_resolution(double resolution) {
+  Statement read = database_.prepare("SELECT resolution FROM site");
+  const Result<bool> row = read.step();
+  if (!row) throw std::runtime_error(row.error().message);
+  if (!*row) {
+    read.reset();
+    const auto written = database_.prepare("INSERT INTO site VALUES (?)").run(resolution);
+    if (!written) throw std::runtime_error(written.error().message);
+  } else if (std::abs(read.real(0) - resolution) > 1e-9) {
+    throw ConfigError("the labels in this state folder are for " + std::to_string(read.real(0)) +
+                      " m voxels; set resolution to that, or start with another state folder");
+  }
+}
+
+Result<void> SemanticStore::put(const LabelCorrection& correction) {
+  Bytes bytes;
+  append_label_correction(bytes, correction);
+  return put_.run(correction.revision, correction.id, ByteSpan(bytes));
+}
+
+Result<void> SemanticStore::put(std::span<const LabelCorrection> corrections) {
+  auto transaction = Transaction::begin(database_);
+  if (!transaction) return tl::unexpected(transaction.error());
+  for (const LabelCorrection& correction : corrections) {
+    if (const auto stored = put(correction); !stored) return stored;
+  }
+  return transaction->commit();
+}
+
+Result<void> SemanticStore::put(const LabelAnchor& placed) {
+  Bytes bytes;
+  archive::append_transform(bytes, placed.T_map_agent);
+  return place_.run(placed.agent, placed.frame_id, ByteSpan(bytes));
+}
+
+Result<void> SemanticStore::for_each(const std::function<Result<void>(LabelCorrection)>& visit) {
+  Statement rows = database_.prepare("SELECT correction FROM corrections ORDER BY revision");
+  for (;;) {
+    const Result<bool> more = rows.step();
+    if (!more) return tl::unexpected(more.error());
+    if (!*more) return {};
+    ByteSpan bytes = rows.bytes(0);
+    auto correction = read_label_correction(bytes);
+    if (!correction || !bytes.empty()) return damaged("a label correction is none");
+    if (const auto visited = visit(std::move(*correction)); !visited) return visited;
+  }
+}
+
+Result<std::vector<LabelAnchor>> SemanticStore::placements() {
+  Statement rows = database_.prepare("SELECT agent, frame_id, T_map_agent FROM placements ORDER BY agent, frame_id");
+  std::vector<LabelAnchor> out;
+  for (;;) {
+    const Result<bool> more = rows.step();
+    if (!more) return tl::unexpected(more.error());
+    if (!*more) return out;
+    archive::FieldReader in(rows.bytes(2));
+    const Transform T = archive::read_transform(in);
+    if (!in.ok() || !is_rotation(T.linear())) return damaged("a placement is none");
+    out.push_back({rows.text(0), rows.text(1), T});
+  }
+}
+
+}  // namespace concord

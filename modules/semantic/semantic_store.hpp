@@ -1,0 +1,38 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "core/label_corrections.hpp"
+#include "store/database.hpp"
+
+namespace concord {
+
+/// What people labelled, on disk: each correction before it is answered.
+class SemanticStore {
+ public:
+  /// @throws std::runtime_error if the file cannot be used; ConfigError if its labels are for another resolution.
+  SemanticStore(const std::filesystem::path& file, double resolution);
+
+  /// Refused: kIo; nothing was stored then.
+  [[nodiscard]] Result<void> put(const LabelCorrection& correction);
+  /// All or none.
+  [[nodiscard]] Result<void> put(std::span<const LabelCorrection> corrections);
+  /// Where a frame lies from now on. Refused: kIo.
+  [[nodiscard]] Result<void> put(const LabelAnchor& placed);
+
+  /// In the order of their revisions. Refused (kIo): the file is damaged; and what `visit` refuses.
+  [[nodiscard]] Result<void> for_each(const std::function<Result<void>(LabelCorrection)>& visit);
+  /// In the order of agents and frames. Refused likewise.
+  [[nodiscard]] Result<std::vector<LabelAnchor>> placements();
+
+ private:
+  void check_resolution(double resolution);
+
+  Database database_;
+  Statement put_, place_;
+};
+
+}  // namespace concord

@@ -1,0 +1,133 @@
+// Labelling and taking off in a small and in a large world: what it costs goes by the voxels touched.
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "semantic/label_view.hpp"
+#include "semantic/semantic_store.hpp"
+
+namespace concord::bench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// An instance is a block of 5 x 5 x 8 voxels: 200, so that 10,000 of them are two million.
+constexpr std::int32_t kSide = 5, kHeight = 8;
+
+std::vector<VoxelIndex> block(std::int32_t number) {
+  std::vector<VoxelIndex> out;
+  const std::int32_t x0 = number % 100 * kSide, y0 = number / 100 * kSide;
+  for (std::int32_t x = 0; x < kSide; ++x) {
+    for (std::int32_t y = 0; y < kSide; ++y) {
+      for (std::int32_t z = 0; z < kHeight; ++z) out.push_back({x0 + x, y0 + y, z});
+    }
+  }
+  return out;
+}
+
+struct Figures {
+  double label_p50 = 0, label_p99 = 0, take_off_p50 = 0, take_off_p99 = 0, stored_label_p50 = 0;
+};
+
+double percentile(std::vector<double> all, double share) {
+  std::sort(all.begin(), all.end());
+  return all[std::min(all.size() - 1, static_cast<std::size_t>(share * static_cast<double>(all.size())))];
+}
+
+class World {
+ public:
+  World(std::int32_t instances, std::int32_t classes) : store_(file(), 0.05), classes_(classes) {
+    BrickMasks occupied;
+    for (std::int32_t i = 0; i < instances + kMore; ++i) occupied.insert(masks_of(block(i)));
+    map_ = occupied.to_map(kOccupied);
+    for (std::int32_t i = 0; i < instances; ++i) (void)label(i, false);
+    next_ = instances;
+  }
+
+  Figures measure() {
+    Figures out;
+    std::vector<double> labels, stored, offs;
+    for (std::int32_t i = 0; i < kMore; ++i) {
+      labels.push_back(label(next_ + i, false));
+      LabelRequest request;
+      request.op = LabelRequest::Op::kTakeOff;
+      request.of = last_;
+      offs.push_back(ask(request, {}, false));
+      stored.push_back(label(next_ + i, true));
+    }
+    out.label_p50 = percentile(labels, 0.5), out.label_p99 = percentile(labels, 0.99);
+    out.take_off_p50 = percentile(offs, 0.5), out.take_off_p99 = percentile(offs, 0.99);
+    out.stored_label_p50 = percentile(stored, 0.5);
+    return out;
+  }
+  [[nodiscard]] std::size_t voxels() const { return map_.known_count(); }
+
+ private:
+  static constexpr std::int32_t kMore = 200;
+
+  static std::filesystem::path file() {
+    const auto path = std::filesystem::temp_directory_path() / "concord-bench-labels.db";
+    for (const char* end : {"", "-wal", "-shm"}) std::filesystem::remove(path.string() + end);
+    return path;
+  }
+  double label(std::int32_t number, bool stored) {
+    LabelRequest request;
+    request.name = "class " + std::to_string(number % classes_);
+    return ask(request, block(number), stored);
+  }
+  /// Microseconds from the request to what shows.
+  double ask(LabelRequest request, const std::vector<VoxelIndex>& voxels, bool stored) {
+    request.id = std::to_string(++asked_);
+    const auto start = Clock::now();
+    auto what = labels_.check(request, voxels);
+    if (!what) throw std::runtime_error(what.error().message);
+    const LabelCorrection correction{labels_.revision() + 1, request.id, "bench", 0, 1, std::move(*what)};
+    if (stored && !store_.put(correction)) throw std::runtime_error("cannot store");
+    BrickSet touched;
+    labels_.apply(correction, touched);
+    for (const auto& [tile, bricks] : touched.sorted()) {
+      for (std::uint64_t bits = bricks; bits != 0; bits &= bits - 1)
+        view_.refresh(brick_at(tile, std::countr_zero(bits)));
+    }
+    last_ = labels_.find(request.id)->of;
+    return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+  }
+
+  SemanticStore store_;
+  std::int32_t classes_, next_ = 0;
+  int asked_ = 0;
+  InstanceId last_;
+  BrickMap map_;
+  Labels labels_{0.05};
+  LabelView view_{labels_, map_, 0.05};
+};
+
+int main(int argc, char** argv) {
+  CLI::App app{"Labelling 200 voxels and taking a label off, in a small and in a large world."};
+  bool json = false;
+  app.add_flag("--json", json, "end with one line of JSON");
+  CLI11_PARSE(app, argc, argv);
+  nlohmann::json out;
+  for (const auto& [instances, classes] : {std::pair(100, 10), {10'000, 1'000}}) {
+    World world(instances, classes);
+    const Figures f = world.measure();
+    std::printf(
+        "%6d instances, %4d classes, %zu voxels: label %.0f us (p99 %.0f), on disk %.0f; take off %.0f us (p99 %.0f)\n",
+        instances, classes, world.voxels(), f.label_p50, f.label_p99, f.stored_label_p50, f.take_off_p50,
+        f.take_off_p99);
+    out[std::to_string(instances)] = {
+        {"label_us", f.label_p50}, {"stored_label_us", f.stored_label_p50}, {"take_off_us", f.take_off_p50}};
+  }
+  if (json) std::printf("%s\n", out.dump().c_str());
+  return 0;
+}
+
+}  // namespace
+}  // namespace concord::bench
+
+int main(int argc, char** argv) { return concord::bench::main(argc, argv); }

@@ -1,0 +1,156 @@
+// One touch in real rooms: the mean IoU of what is proposed against the true boxes, per class.
+
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <stdexcept>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "semantic/model_file.hpp"
+#include "semantic/room_planes.hpp"
+#include "semantic/segment.hpp"
+#include "semantic/solid_voxels.hpp"
+
+namespace concord::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kResolution = 0.05;
+constexpr std::size_t kSeedsSpread = 12;
+
+struct TrueBox {
+  std::string label;
+  std::vector<Eigen::Vector3d> corners;  ///< [0] to [1], [2] and [4] are its edges
+
+  [[nodiscard]] bool holds(const Eigen::Vector3d& p) const {
+    for (const int i : {1, 2, 4}) {
+      const Eigen::Vector3d edge = corners[static_cast<std::size_t>(i)] - corners[0];
+      const double along = (p - corners[0]).dot(edge) / edge.squaredNorm();
+      if (along < 0.0 || along > 1.0) return false;
+    }
+    return true;
+  }
+  [[nodiscard]] Eigen::Vector3d centre() const { return (corners[0] + corners[7]) / 2; }
+};
+
+std::vector<TrueBox> boxes_of(const fs::path& file) {
+  nlohmann::json all;
+  std::ifstream(file) >> all;
+  std::vector<TrueBox> boxes;
+  for (const auto& one : all.at("boxes")) {
+    TrueBox box{one.at("label"), {}};
+    for (const auto& c : one.at("corners_m")) box.corners.emplace_back(c[0], c[1], c[2]);
+    boxes.push_back(box);
+  }
+  return boxes;
+}
+
+double iou(const BrickMasks& truth, const BrickMasks& proposed) {
+  BrickMasks both = truth, only_truth = truth;
+  both.insert(proposed);
+  only_truth.erase(proposed);
+  const auto shared = static_cast<double>(truth.count() - only_truth.count());
+  return both.empty() ? 0.0 : shared / static_cast<double>(both.count());
+}
+
+struct Score {
+  double at_centre = 0.0, spread = 0.0;
+  double without_room = 0.0;  ///< at the centre; floor and walls that lie in the box are not asked for
+  std::int64_t voxels = 0, proposed = 0;
+  int kind = -1;
+};
+
+/// The seed is the occupied voxel nearest to the box's centre, as if touched from there; `spread` is the mean over
+/// seeds all over the object above its lowest layer.
+Score score(const BrickMasks& occupied, const BrickMasks& room, const TrueBox& box) {
+  BrickMasks truth;
+  std::vector<VoxelIndex> in_box;
+  for (const VoxelIndex v : occupied.voxels()) {
+    if (box.holds(centre_of(v, kResolution))) in_box.push_back(v), truth.insert(v);
+  }
+  Score out;
+  out.voxels = truth.count();
+  const auto ask = [&](const Eigen::Vector3d& p) {
+    const auto proposal = propose_object(occupied, kResolution, p);
+    if (proposal) out.kind = static_cast<int>(proposal->kind), out.proposed = proposal->voxels.count();
+    return proposal ? iou(truth, proposal->voxels) : 0.0;
+  };
+  std::size_t seeds = 0;
+  std::vector<VoxelIndex> above;
+  for (const VoxelIndex v : in_box) {
+    if (v.z > 1) above.push_back(v);
+  }
+  for (std::size_t i = 0; i < kSeedsSpread && !above.empty(); ++i, ++seeds) {
+    out.spread += ask(centre_of(above[(2 * i + 1) * above.size() / (2 * kSeedsSpread)], kResolution));
+  }
+  if (seeds > 0) out.spread /= static_cast<double>(seeds);
+  out.at_centre = ask(box.centre());
+  const auto proposal = propose_object(occupied, kResolution, box.centre());
+  BrickMasks furniture = truth;
+  furniture.erase(room);
+  out.without_room = proposal ? iou(furniture, proposal->voxels) : 0.0;
+  return out;
+}
+
+int main(int argc, char** argv) {
+  CLI::App app{"One touch in real rooms: IoU of the proposed voxels with those in the true box."};
+  const char* data = std::getenv("CONCORD_DATA");
+  std::string folder = (fs::path(data != nullptr ? data : CONCORD_SHARED_DATA) / "quest3_rooms").string();
+  bool json = false;
+  app.add_option("folder", folder, "NAME.ply beside NAME.labels.json");
+  app.add_flag("--json", json, "end with one line of JSON");
+  CLI11_PARSE(app, argc, argv);
+  std::map<std::string, std::vector<Score>> classes;
+  std::vector<fs::path> rooms;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == ".ply") rooms.push_back(entry.path());
+  }
+  std::sort(rooms.begin(), rooms.end());
+  for (const fs::path& room : rooms) {
+    const auto mesh = read_model_file(room);
+    if (!mesh) throw std::runtime_error(mesh.error().message);
+    const auto voxels = voxelize(*mesh, {}, kResolution, Fill::kSurface);
+    if (!voxels) throw std::runtime_error(voxels.error().message);
+    for (const TrueBox& box : boxes_of(fs::path(room).replace_extension(".labels.json"))) {
+      const Score one = score(voxels->surface, find_room_planes(voxels->surface, kResolution).voxels, box);
+      static constexpr const char* kKinds[] = {"none", "flat top", "upright", "cluster"};
+      std::printf(
+          "%-14s %-8s %6lld true, %6lld proposed as %-8s IoU %.2f (without floor and walls %.2f), all over it %.2f\n",
+          room.stem().c_str(), box.label.c_str(), static_cast<long long>(one.voxels),
+          static_cast<long long>(one.proposed), kKinds[one.kind + 1], one.at_centre, one.without_room, one.spread);
+      if (one.voxels > 10) classes[box.label].push_back(one);
+    }
+  }
+  nlohmann::json out;
+  for (const auto& [label, scores] : classes) {
+    double centre = 0, spread = 0, without = 0;
+    for (const Score& one : scores) centre += one.at_centre, spread += one.spread, without += one.without_room;
+    const auto n = static_cast<double>(scores.size());
+    std::printf("%-8s %2zu objects: mean IoU %.2f (without floor and walls %.2f), all over it %.2f\n", label.c_str(),
+                scores.size(), centre / n, without / n, spread / n);
+    out[label] = {{"objects", scores.size()},
+                  {"iou", centre / n},
+                  {"iou_without_room", without / n},
+                  {"iou_all_over", spread / n}};
+  }
+  if (json) std::printf("%s\n", out.dump().c_str());
+  return 0;
+}
+
+}  // namespace
+}  // namespace concord::bench
+
+int main(int argc, char** argv) {
+  try {
+    return concord::bench::main(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "bench_segment: %s\n", error.what());
+    return 2;
+  }
+}

@@ -1,0 +1,202 @@
+#include <fstream>
+
+#include "semantic_station.hpp"
+
+namespace concord {
+namespace {
+
+/// A cube of 1 m as a file, in millimetres, and the folder that says so.
+class AssetsNodeTest : public SemanticStation {
+ protected:
+  AssetsNodeTest() {
+    const auto folder = site_.state / "assets";
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "assets.yaml")
+        << "cube: {file: cube.obj, class: box, unit: 0.001}\nnone: {file: none.obj}\n";
+    std::ofstream out(folder / "cube.obj");
+    for (int i = 0; i < 8; ++i)
+      out << "v " << (i & 1) * 1000 << " " << (i >> 1 & 1) * 1000 << " " << (i >> 2) * 1000 << "\n";
+    out << "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+    out.close();
+    run();  // it is looked for each second
+  }
+
+  Answer inject(const std::string& id, const std::string& asset, double x) {
+    Transform T = Transform::Identity();
+    T.translation().x() = x;
+    return ask("in/asset", encode(AssetRequest{id, "eva", AssetRequest::Op::kInject, asset, "", T, 5}));
+  }
+  /// Semantic's word, not merge's on the halves of it.
+  Answer move(const std::string& id, const std::string& of, double x) {
+    Transform T = Transform::Identity();
+    T.translation().x() = x;
+    ask("in/asset", encode(AssetRequest{id, "eva", AssetRequest::Op::kMove, "", of, T, 5}));
+    run();
+    const auto own = std::ranges::find(answers_, id, &Answer::id);
+    return own != answers_.end() ? *own : Answer{};
+  }
+  Answer take_out(const std::string& id, const std::string& of) {
+    return ask("in/asset",
+               encode(AssetRequest{id, "eva", AssetRequest::Op::kDelete, "", of, Transform::Identity(), 5}));
+  }
+  Answer undo_edit(const std::string& id, const std::string& edit, bool redo = false) {
+    const Answer answer = ask("in/undo", encode(UndoRequest{id, "eva", edit, redo, bus_->now()}));
+    run();
+    return answer;
+  }
+  /// What is where a cube at 2 m has its middle, and at 5 m, and at 8 m.
+  [[nodiscard]] std::string places() const {
+    std::string out;
+    for (const std::int32_t x : {25, 55, 85}) out += (is_there(x) ? seen_at(x) : "-") + "|";
+    return out;
+  }
+  [[nodiscard]] bool is_there(std::int32_t x) const { return is_occupied(merge_->map().at({x, 5, 5})); }
+  [[nodiscard]] std::string seen_at(std::int32_t x) const {
+    const LogOdds value = heard_.at({x, 5, 5});
+    if (!is_known(value)) return "";
+    const auto slot = std::ranges::find(slots_->items(), slot_of_value(value), &LabelSlot::slot);
+    return slot == slots_->items().end() ? "?" : slot->name + " " + std::to_string(slot->of.instance);
+  }
+};
+
+TEST_F(AssetsNodeTest, AModelIsOccupiedAndLabelledInsideToo) {
+  const Answer answer = inject("a1", "cube", 2.0);
+  ASSERT_TRUE(answer.ok) << answer.message;
+  EXPECT_EQ(answer.process, "semantic");
+  EXPECT_EQ(answer.count, 11 * 11 * 11);
+  run();
+  EXPECT_TRUE(is_there(25));
+  EXPECT_EQ(seen_at(25), "box 1");
+  EXPECT_FALSE(is_there(31));
+  EXPECT_TRUE(inject("a1", "cube", 2.0).ok);  // its answer was lost
+  EXPECT_EQ(semantic_->view().slot_count(), 1U);
+  EXPECT_EQ(inject("a1", "cube", 3.0).code, "EXISTS");
+}
+
+TEST_F(AssetsNodeTest, UndoingItsEditUndoesItWholeAndRedoBringsItBack) {
+  ASSERT_TRUE(inject("a1", "cube", 2.0).ok);
+  ASSERT_TRUE(ask("in/undo", encode(UndoRequest{"u1", "eva", "asset-a1", false, bus_->now()})).ok);
+  run();
+  EXPECT_FALSE(is_there(25));
+  EXPECT_EQ(seen_at(25), "");
+  start();
+  EXPECT_EQ(seen_at(25), "");
+  ASSERT_TRUE(ask("in/undo", encode(UndoRequest{"u2", "eva", "asset-a1", true, bus_->now()})).ok);
+  run();
+  EXPECT_EQ(seen_at(25), "box 1");
+  start();
+  EXPECT_EQ(seen_at(25), "box 1");
+}
+
+TEST_F(AssetsNodeTest, AModelIsMovedAsOneThingAndKeepsItsName) {
+  ASSERT_TRUE(inject("a1", "cube", 2.0).ok);
+  const Answer answer = move("m1", "a1", 5.0);
+  ASSERT_TRUE(answer.ok) << answer.message;
+  run();
+  EXPECT_EQ(places(), "-|box 1|-|");
+  ASSERT_TRUE(move("m2", "a1", 8.0).ok);
+  move("m1", "a1", 5.0);  // an old copy does nothing
+  run();
+  EXPECT_EQ(places(), "-|-|box 1|");
+  start();
+  EXPECT_EQ(places(), "-|-|box 1|");
+  ASSERT_TRUE(undo_edit("u1", "asset-m2").ok);
+  EXPECT_EQ(places(), "-|box 1|-|");
+  ASSERT_TRUE(undo_edit("u2", "asset-m1").ok);
+  EXPECT_EQ(places(), "box 1|-|-|");
+  ASSERT_TRUE(undo_edit("u3", "asset-m1", true).ok);
+  EXPECT_EQ(places(), "-|box 1|-|");
+  start();
+  EXPECT_EQ(places(), "-|box 1|-|");
+}
+
+TEST_F(AssetsNodeTest, AMovedModelIsTakenOutForGoodWhereverItIs) {
+  ASSERT_TRUE(inject("a1", "cube", 2.0).ok);
+  ASSERT_TRUE(move("m1", "a1", 5.0).ok);
+  const Answer gone = take_out("d1", "a1");
+  ASSERT_TRUE(gone.ok) << gone.message;
+  run();
+  EXPECT_EQ(places(), "-|-|-|");
+  EXPECT_TRUE(take_out("d1", "a1").ok);  // its answer was lost
+  start();
+  EXPECT_TRUE(take_out("d1", "a1").ok);
+  EXPECT_EQ(places(), "-|-|-|");
+  EXPECT_EQ(take_out("d2", "a1").code, "NOT_FOUND");
+  EXPECT_EQ(move("m2", "a1", 8.0).code, "NOT_FOUND");
+  ASSERT_TRUE(undo_edit("u1", "asset-m1", true).ok);
+  EXPECT_EQ(places(), "-|box 1|-|");
+}
+
+TEST_F(AssetsNodeTest, AMoveThatMayNotLeaveItsOldPlaceIsUndone) {
+  ASSERT_TRUE(inject("a1", "cube", 2.0).ok);
+  LeaseRequest lease;
+  lease.id = "lease";
+  lease.author = "bob";
+  lease.lease = "corner";
+  lease.volume = Box{{2, 0, 0}, {3, 1, 1}};
+  lease.utime = bus_->now();
+  ASSERT_TRUE(ask("in/lease", encode(lease)).ok);
+  EXPECT_EQ(move("m1", "a1", 5.0).code, "LOCKED");
+  run();
+  EXPECT_EQ(places(), "box 1|-|-|");
+}
+
+TEST_F(AssetsNodeTest, AKillBetweenTheTwoHalvesOfAMoveLosesNothing) {
+  ASSERT_TRUE(inject("a1", "cube", 2.0).ok);
+  stop();
+  {
+    SemanticStore store(site_.state / "semantic.db", site_.resolution);
+    Transform T = Transform::Identity();
+    T.translation().x() = 5.0;
+    ASSERT_TRUE(store.put({2, "m1", "eva", 5, 7,
+                           LabelCorrection::Claim{{1, 1}, "", {{55, 5, 5}}, "asset-m1", {}, {"cube", T, "asset-a1"}}}));
+  }
+  start();
+  run();
+  EXPECT_EQ(places(), "-|box 1|-|");
+  start();
+  EXPECT_EQ(places(), "-|box 1|-|");
+}
+
+TEST_F(AssetsNodeTest, AKillBetweenTheIntentAndTheEditLosesNothing) {
+  stop();
+  {
+    SemanticStore store(site_.state / "semantic.db", site_.resolution);
+    ASSERT_TRUE(store.put(
+        {1, "a1", "eva", 5, 7,
+         LabelCorrection::Claim{{1, 1}, "box", {{25, 5, 5}}, "asset-a1", {}, {"cube", Transform::Identity(), ""}}}));
+  }
+  start();
+  run();
+  EXPECT_TRUE(is_there(25));
+  EXPECT_EQ(seen_at(25), "box 1");
+  EXPECT_TRUE(ask("in/undo", encode(UndoRequest{"u1", "eva", "asset-a1", false, bus_->now()})).ok);
+}
+
+TEST_F(AssetsNodeTest, WhatMergeRefusesIsNotThere) {
+  LeaseRequest lease;
+  lease.id = "lease";
+  lease.author = "bob";
+  lease.lease = "corner";
+  lease.volume = Box{{2, 0, 0}, {3, 1, 1}};
+  lease.utime = bus_->now();
+  ASSERT_TRUE(ask("in/lease", encode(lease)).ok);
+  EXPECT_EQ(inject("a1", "cube", 2.0).code, "LOCKED");
+  run(20'000'000);  // the lease is over
+  EXPECT_FALSE(is_there(25));
+  EXPECT_EQ(seen_at(25), "");
+  EXPECT_TRUE(inject("a2", "cube", 2.0).ok);
+  run();
+  EXPECT_EQ(seen_at(25), "box 2");  // no number twice
+}
+
+TEST_F(AssetsNodeTest, RefusesWhatIsNoAsset) {
+  EXPECT_EQ(inject("a1", "sphere", 0).code, "NOT_FOUND");
+  EXPECT_EQ(inject("a2", "none", 0).code, "NOT_FOUND");
+  EXPECT_EQ(inject("a3", "cube", 5000).code, "OUT_OF_BOUNDS");
+  EXPECT_EQ(inject(std::string(75, 'a'), "cube", 0).code, "BAD_REQUEST");
+  EXPECT_EQ(semantic_->view().slot_count(), 0U);
+}
+
+}  // namespace
+}  // namespace concord

@@ -1,0 +1,92 @@
+#include "semantic/sightings.hpp"
+
+#include <gtest/gtest.h>
+
+namespace concord {
+namespace {
+
+Transform at(double x, double y = 0, double angle = 0) {
+  Transform T = Transform::Identity();
+  T.linear() = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  T.translation() = Eigen::Vector3d(x, y, 0);
+  return T;
+}
+
+class SightingsTest : public testing::Test {
+ protected:
+  Sightings::Seen see(const Transform& T, const std::string& object = "", const std::string& asset = "chair",
+                      double score = 0.8) {
+    Detection detection;
+    detection.author = "hmd";
+    detection.object = object;
+    detection.score = score;
+    detection.utime = ++now_;
+    return *sightings_.see(detection, asset, asset, T);
+  }
+  Sightings sightings_;
+  std::int64_t now_ = 0;
+};
+
+TEST_F(SightingsTest, RepeatedSightingsOfOneObjectAreOneThingWhereTheyAgree) {
+  EXPECT_TRUE(see(at(1.0)).is_new);
+  EXPECT_FALSE(see(at(1.2)).is_new);
+  EXPECT_FALSE(see(at(1.1, 0.1)).is_new);
+  ASSERT_EQ(sightings_.list().size(), 1U);
+  EXPECT_EQ(sightings_.list()[0].sightings, 3);
+  EXPECT_NEAR(sightings_.list()[0].T_map_asset.translation().x(), 1.1, 1e-6);
+}
+
+TEST_F(SightingsTest, OtherAssetsAndOtherPlacesAreOtherThings) {
+  EXPECT_EQ(see(at(1.0)).number, 1);
+  EXPECT_EQ(see(at(1.0), "", "table").number, 2);
+  EXPECT_EQ(see(at(1.6)).number, 3);
+  EXPECT_EQ(see(at(1.35)).number, 3);  // the nearer one
+  EXPECT_EQ(see(at(1.02)).number, 1);
+}
+
+TEST_F(SightingsTest, WhatIsFollowedUnderAnNameIsOneWhereverItGoes) {
+  EXPECT_EQ(see(at(1.0), "target 7").number, 1);
+  EXPECT_EQ(see(at(9.0), "target 7").number, 1);
+  EXPECT_NEAR(sightings_.list()[0].T_map_asset.translation().x(), 9.0, 1e-6);
+  EXPECT_EQ(see(at(9.1), "target 7", "table").number, 2);  // it was none
+}
+
+TEST_F(SightingsTest, AConfirmedThingMovesWhenThreeSightingsAgree) {
+  see(at(1.0), "t");
+  sightings_.put(1, "a1", at(1.0));
+  EXPECT_FALSE(see(at(1.1), "t").moved_to);  // noise
+  EXPECT_FALSE(see(at(4.0), "t").moved_to);
+  EXPECT_FALSE(see(at(6.0), "t").moved_to);  // disagrees
+  EXPECT_FALSE(see(at(6.05), "t").moved_to);
+  EXPECT_EQ(sightings_.find(1)->T_map_asset.translation().x(), 1.0);  // it stays until it is moved
+  const auto moved = see(at(6.1), "t");
+  ASSERT_TRUE(moved.moved_to);
+  EXPECT_NEAR(moved.moved_to->translation().x(), 6.05, 1e-6);
+  EXPECT_FALSE(see(at(4.0), "t").moved_to);
+  EXPECT_FALSE(see(at(1.0), "t").moved_to);
+  EXPECT_FALSE(see(at(4.0), "t").moved_to);
+  EXPECT_FALSE(see(at(4.0), "t").moved_to);  // it was seen in its place between
+}
+
+TEST_F(SightingsTest, ATurnedThingMovesToo) {
+  see(at(1.0));
+  sightings_.put(1, "a1", at(1.0));
+  see(at(1.0, 0, 1.2));
+  see(at(1.0, 0, 1.2));
+  EXPECT_TRUE(see(at(1.0, 0, 1.2)).moved_to);
+}
+
+TEST_F(SightingsTest, IsBoundedAndLetsGoOfTheOldestThatNobodyConfirmed) {
+  for (std::size_t i = 0; i < kMaxThings; ++i) see(at(10.0 * static_cast<double>(i)));
+  sightings_.put(1, "a1", at(0));
+  EXPECT_TRUE(see(at(-10)).is_new);
+  EXPECT_EQ(sightings_.list().size(), kMaxThings);
+  EXPECT_NE(sightings_.find(1), nullptr);
+  EXPECT_EQ(sightings_.find(2), nullptr);
+  for (const Thing& thing : sightings_.list()) sightings_.put(thing.number, "a", thing.T_map_asset);
+  Detection detection;
+  EXPECT_EQ(sightings_.see(detection, "chair", "chair", at(-50)).error().code, Code::kTooLarge);
+}
+
+}  // namespace
+}  // namespace concord
