@@ -135,7 +135,8 @@ void add_goals(Program& program) {
       [options](const Common& common) { return goal(*options, common); });
   go.add_option("robot", options->robot, "the robot's id")->required();
   go.add_option("goal", options->to, "x y, map frame, metres")->expected(2)->required();
-  go.add_option("--yaw", options->yaw, "where a robot with a footprint is to point there, radians; without it anywhere");
+  go.add_option("--yaw", options->yaw,
+                "where a robot with a footprint is to point there, radians; without it anywhere");
   go.add_option("--from", options->from,
                 "\"x y\", map frame; without it the robot's last pose, also when planned anew");
   go.add_option("--via", options->via, "\"x y\", map frame, metres: a place to pass first; may be given again");
