@@ -53,25 +53,11 @@ ClearanceSearch::ClearanceSearch(const OpenGrid& grid, const DistanceField& fiel
       also_(std::move(also)),
       costs_(field.reach()),
       states_(static_cast<std::size_t>(grid.width()) * static_cast<std::size_t>(grid.height())),
-      buckets_(kBuckets) {
-  update({{0, 0}, {grid.width() - 1, grid.height() - 1}});
-}
-
-/// Where it has come nearer since nothing is said: the bound is looser then, and holds.
-void ClearanceSearch::update(const Window& window) {
-  const int reach = field_.reach();
-  const int x0 = std::max(0, window.low.x - reach), x1 = std::min(grid_.width() - 1, window.high.x + reach);
-  const int y1 = std::min(grid_.height() - 1, window.high.y + reach);
-  for (int y = std::max(0, window.low.y - reach); y <= y1; ++y) {
-    const std::uint16_t* row = field_.row(y);
-    for (int x = x0; x <= x1; ++x) furthest_squared_ = std::max(furthest_squared_, row[x]);
-  }
-}
+      buckets_(kBuckets) {}
 
 void ClearanceSearch::heed(const ExtraCosts* extra) {
   extra_ = extra;
-  // What they hold lies elsewhere among as many as there are now.
-  buckets_.assign(extra_ == nullptr ? kBuckets : kBucketsWithExtra, {});
+  buckets_.resize(extra_ == nullptr ? kBuckets : kBucketsWithExtra);
 }
 
 std::int64_t ClearanceSearch::at_least(Cell from, Cell to) {
@@ -95,28 +81,16 @@ void ClearanceSearch::begin(Cell goal) {
     states_.clear();
     query_ = 1;
   }
-  const std::int64_t used = std::min<std::int64_t>(last_ - first_ + 1, static_cast<std::int64_t>(buckets_.size()));
-  for (std::int64_t i = 0; i < used; ++i) bucket(first_ + i).clear();
+  for (std::vector<std::uint32_t>& bucket : buckets_) bucket.clear();
   waiting_ = 0;
   goal_ = goal;
-  const int least = costs_.factor(furthest_squared_);
-  straight_ = kStraightStep * least / ClearanceCost::kUnit;
-  diagonal_ = kDiagonalStep * least / ClearanceCost::kUnit;
-}
-
-/// What is left costs no less: as many steps as on an open grid, each as cheap as any is.
-std::int64_t ClearanceSearch::estimate(Cell cell) const {
-  const std::int64_t dx = std::abs(std::int64_t{cell.x} - goal_.x);
-  const std::int64_t dy = std::abs(std::int64_t{cell.y} - goal_.y);
-  return std::max(dx, dy) * straight_ + std::min(dx, dy) * (diagonal_ - straight_);
 }
 
 void ClearanceSearch::reach(std::uint32_t index, Cell cell, std::int64_t cost, int direction) {
   State& state = states_[index];
   if (state.query == query_ && cost >= state.cost) return;
-  const std::int64_t total = cost + estimate(cell);
+  const std::int64_t total = cost + at_least(cell, goal_);
   if (total >= limit_) return;
-  last_ = std::max(last_, total);
   state = {cost, query_, static_cast<std::uint8_t>(direction), false};
   bucket(total).push_back(index);
   ++waiting_;
@@ -139,7 +113,7 @@ std::optional<ClearPath> ClearanceSearch::find(Cell start, Cell goal, const Limi
   if (!grid_.is_open(start) || !grid_.is_open(goal)) return std::nullopt;
   begin(goal);
   limit_ = limits.cost;
-  least_ = first_ = last_ = estimate(start);
+  least_ = at_least(start, goal);
   reach(index_of(start), start, 0, 0);
   while (waiting_ > 0) {
     std::vector<std::uint32_t>& next = bucket(least_);

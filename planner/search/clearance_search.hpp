@@ -50,9 +50,6 @@ class ClearanceSearch {
   /// `also`, if there is such a rule.
   ClearanceSearch(const OpenGrid& grid, const DistanceField& field, SightRule also = {});
 
-  /// The field has changed within its reach of `window`.
-  void update(const Window& window);
-
   /// Cells cost that much more from now on. Null: none does. It must outlive this.
   void heed(const ExtraCosts* extra);
 
@@ -88,7 +85,7 @@ class ClearanceSearch {
 
  private:
   /// Powers of two, more than a step and what it leads away from the goal can cost.
-  static constexpr std::size_t kBuckets = 2048, kBucketsWithExtra = 4096;
+  static constexpr std::size_t kBuckets = 1024, kBucketsWithExtra = 4096;
   struct State {
     std::int64_t cost;
     std::uint32_t query;
@@ -97,7 +94,6 @@ class ClearanceSearch {
   };
 
   void begin(Cell goal);
-  [[nodiscard]] std::int64_t estimate(Cell cell) const;
   void reach(std::uint32_t index, Cell cell, std::int64_t cost, int direction);
   void expand(std::uint32_t index, Cell cell);
   [[nodiscard]] std::uint32_t index_of(Cell cell) const;
@@ -124,12 +120,8 @@ class ClearanceSearch {
   Zeroed<State> states_;
   std::uint32_t query_ = 0;
   std::vector<std::vector<std::uint32_t>> buckets_;
-  /// No cell is further from what is blocked, so each step costs at least so much.
-  std::uint16_t furthest_squared_ = 0;
-  std::int64_t straight_ = 0, diagonal_ = 0;
-  std::int64_t first_ = 0, last_ = 0;  ///< total costs of the buckets that were used
-  std::int64_t least_ = 0;             ///< total cost of the present bucket
-  std::int64_t waiting_ = 0;           ///< in all buckets
+  std::int64_t least_ = 0;    ///< total cost of the present bucket
+  std::int64_t waiting_ = 0;  ///< in all buckets
   Cell goal_;
   std::int64_t limit_ = 0;  ///< a path costs less
   std::int64_t expanded_ = 0;

@@ -122,7 +122,6 @@ bool GridPaths::follow(const Window& window, const std::vector<bool>& before) {
   if (graph_) graph_->update(window);
   if (any_angle_) any_angle_->update(window);
   if (field_) field_->update(window);
-  if (clearance_) clearance_->update(window);
   for (std::size_t i = 0; i < now.size(); ++i) {
     if (now[i] && !before[i]) return true;
   }

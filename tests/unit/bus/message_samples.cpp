@@ -229,7 +229,7 @@ const std::vector<MessageSample>& message_samples() {
       sample("map_request_t", MapRequest{"r-4", MapRequest::Op::kLoad, "hall", "concord", false, "robot1"}),
       sample("map_request_t", MapRequest{"r-4", MapRequest::Op::kSave, "hall", "bt", true, ""}),
       sample("map_list_t", MapList{"r-5", {{"a.bt", 100}, {"b.ot", 1LL << 40}}}),
-      sample("path_request_t", asked_path(),
+      sample("path_request_t", asked_path()),
       sample("path_request_t", cancelled_path()),
       sample("path_request_t", PathRequest{"r-9",
                                            "robot1",

@@ -127,7 +127,12 @@ TEST(Messages, long_texts_for_people_are_cut_between_characters) {
 }
 
 TEST(Messages, paths_are_checked) {
-  PathRequest request{"r", "robot1", std::nullopt, {kNaN, 0}, 0.4, true, {}};
+  PathRequest request;
+  request.id = "r";
+  request.robot = "robot1";
+  request.goal = {kNaN, 0};
+  request.radius = 0.4;
+  request.keep_active = true;
   expect_refused(decode<PathRequest>(encode(request, 1)), Code::kNotFinite, "r");
   request.goal = {1, 1};
   request.start = Eigen::Vector2d(0, 1e9);
