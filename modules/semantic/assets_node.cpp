@@ -98,19 +98,24 @@ void AssetsNode::take_out(const AssetRequest& request) {
   const auto before = removed_.find(request.id);
   const auto there = where_is(request.of, parts_.labels);
   if (before == removed_.end() && !there) {
-    return replies_.deny(kRequests, request.id,
-                         {Code::kNotFound, "nothing that " + request.of + " injected is in the map"});
+    return replies_.deny(kRequests, request.id, nothing_there(request.of));
   }
   UndoRequest undo = removal(before != removed_.end() ? before->second : there->edit_id, request.id, request.author);
   undo.utime = request.utime;
   context_.bus.publish("in/undo", encode(undo));
 }
 
+/// After a restart it is merge that knows what is in the map.
+Error AssetsNode::nothing_there(const std::string& request_id) const {
+  if (!is_up_to_date()) return {Code::kBusy, "semantic has just begun and does not know all edits yet; ask again"};
+  return {Code::kNotFound, "nothing that " + request_id + " injected is in the map"};
+}
+
 Result<LabelCorrection::Claim> AssetsNode::claim_of(const AssetRequest& request) const {
   LabelRequest label;
   if (request.op == AssetRequest::Op::kMove) {
     const auto there = where_is(request.of, parts_.labels);
-    if (!there) return refuse(Code::kNotFound, "nothing that " + request.of + " injected is in the map");
+    if (!there) return tl::unexpected(nothing_there(request.of));
     label.name = parts_.labels.classes().at(there->of.label).name;
     label.of.instance = there->of.instance;
     return claim_of(std::move(label), {there->what.asset, request.T_map_asset, there->edit_id}).map([&](auto claim) {

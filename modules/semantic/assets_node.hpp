@@ -44,6 +44,7 @@ class AssetsNode {
  private:
   void put(const AssetRequest& request, std::uint64_t content);
   void take_out(const AssetRequest& request);
+  [[nodiscard]] Error nothing_there(const std::string& request_id) const;
   [[nodiscard]] Result<LabelCorrection::Claim> claim_of(const AssetRequest& request) const;
   [[nodiscard]] Result<LabelCorrection::Claim> claim_of(LabelRequest label, Injection injection) const;
   void on_answer(const Answer& answer);
