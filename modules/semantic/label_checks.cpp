@@ -28,6 +28,7 @@ std::string words(InstanceId of) {
 Result<Labels::What> Labels::check(const LabelRequest& request, const std::vector<VoxelIndex>& voxels) const {
   switch (request.op) {
     case LabelRequest::Op::kLabel:
+    case LabelRequest::Op::kTouch:
     case LabelRequest::Op::kRestore: return check_claim(request, voxels);
     case LabelRequest::Op::kRename: return check_rename(request);
     case LabelRequest::Op::kReassign: return check_reassign(request);
