@@ -242,4 +242,13 @@ Result<void> Labels::follows(const LabelCorrection& correction) const {
   return std::visit(Follow{*this}, correction.what);
 }
 
+std::map<InstanceId, std::string> Labels::assets() const {
+  std::map<InstanceId, std::string> out;
+  for (const auto& [edit_id, steps] : by_edit_) {
+    const std::uint32_t step = steps.front();
+    if (const auto of = holder_of(step)) out[*of] = steps_[step].claim.injection.asset;
+  }
+  return out;
+}
+
 }  // namespace concord

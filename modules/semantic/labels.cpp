@@ -109,15 +109,6 @@ std::vector<Labels::Injected> Labels::injected() const {
   return out;
 }
 
-std::map<InstanceId, std::string> Labels::assets() const {
-  std::map<InstanceId, std::string> out;
-  for (const auto& [edit_id, steps] : by_edit_) {
-    const std::uint32_t step = steps.front();
-    if (const auto of = holder_of(step)) out[*of] = steps_[step].claim.injection.asset;
-  }
-  return out;
-}
-
 bool Labels::is_news(const LabelAnchor& where) const {
   const auto frame = frames_.find({where.agent, where.frame_id});
   if (frame == frames_.end() || frame->second.claims.empty()) return false;

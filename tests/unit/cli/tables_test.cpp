@@ -98,7 +98,8 @@ TEST(Tables, NoRegionOfConflictsGrowsOverAWholeBuilding) {
 
 TEST(Tables, TheStatusNamesWhoIsMissing) {
   Statuses heard;
-  for (const char* name : {"align", "ingest", "planner", "semantic"}) heard[name] = {5'000'000, name, 1'000'000, {{"agents", 1}}};
+  for (const char* name : {"align", "ingest", "planner", "semantic"})
+    heard[name] = {5'000'000, name, 1'000'000, {{"agents", 1}}};
   EXPECT_EQ(missing(heard), std::vector<std::string>{"merge"});
   EXPECT_EQ(to_json(heard)["missing"], nlohmann::json({"merge"}));
   EXPECT_NE(to_words(heard).find("merge  MISSING"), std::string::npos) << to_words(heard);

@@ -155,9 +155,9 @@ TEST(StaticFiles, ModelsAreReadWhenTheyAreAskedForByAPlainNameAlone) {
   EXPECT_EQ(files.find("/models/x/pallet.glb")->type, "model/gltf-binary");
   std::ofstream(folder.path / "gltf" / "pallet.glb") << "another";
   EXPECT_EQ(*files.find("/models/x/pallet.glb")->body, "another");
-  for (const char* target : {"/models/x/../secret.glb", "/models/x/sub/secret.glb", "/models/x/secret.txt",
-                             "/models/x/", "/models/x/.glb", "/models/pallet.glb", "/models/y/pallet.glb",
-                             "/models/x//pallet.glb", "/models/x/%2e%2e/secret.glb"}) {
+  for (const char* target :
+       {"/models/x/../secret.glb", "/models/x/sub/secret.glb", "/models/x/secret.txt", "/models/x/", "/models/x/.glb",
+        "/models/pallet.glb", "/models/y/pallet.glb", "/models/x//pallet.glb", "/models/x/%2e%2e/secret.glb"}) {
     EXPECT_EQ(files.find(target), nullptr) << target;
   }
 }
