@@ -8,6 +8,7 @@
 #include "align/gates.hpp"
 #include "align/hypotheses.hpp"
 #include "align/looseness.hpp"
+#include "align/moved_things.hpp"
 
 namespace concord {
 namespace {
@@ -15,9 +16,9 @@ namespace {
 constexpr std::size_t kJudgePieces = 20'000;
 constexpr std::size_t kRivalPieces = 6000;
 constexpr int kSettleRounds = 2;
-constexpr double kSettleStep = 0.2;                // metres: twice what the kernel of the finest level heeds
-constexpr double kMirrorYaw = 5.0 * M_PI / 180.0;  // what walls along walls leave open
-constexpr double kMirrorReach = 6.0;               // metres: a part lies as far on the other side of its room
+constexpr double kSettleStep = 0.2;                 // metres: twice what the kernel of the finest level heeds
+constexpr double kMirrorYaw = 12.0 * M_PI / 180.0;  // twice what the direction of the walls is off by, and a margin
+constexpr double kMirrorReach = 6.0;                // metres: a part lies as far on the other side of its room
 
 bool has_map(const AlignMap& map) { return map.points.size() >= kMinSurfacePoints; }
 
@@ -70,6 +71,16 @@ Support judge(const AlignMap& target, const AlignMap& source, const GicpResult& 
   out.reason = gates.reason;
   out.message = std::move(gates.message);
   return s;
+}
+
+/// A place that is contradicted only where one thing was moved is believed; `moved` is filled only then.
+void forgive_moved_things(const AlignMap& target, const AlignMap& source, const Support& found, MovedThings& moved,
+                          Alignment& out) {
+  MovedThings things = without_moved_things(target, source, out.T_target_source, found, kJudgePieces);
+  if (!agrees_but_for_moved_things(things.rest)) return;
+  moved = std::move(things);
+  out.reason = AlignReason::kAccepted;
+  out.message.clear();
 }
 
 /// What is asked only of a place that passed the gates.
@@ -127,16 +138,22 @@ std::vector<Transform> mirrored_on_the_spot(const AlignMap& source, const Transf
 
 /// A room of the same plan, or a map with its left and right exchanged, lies on the walls as well; but something is
 /// against it, and its mirror image lies better.
-void try_mirrored(const AlignMap& target, const AlignMap& source, const Support& accepted, int threads,
-                  Alignment& out) {
+void try_mirrored(const AlignMap& target, const AlignMap& source, const Support& accepted, const MovedThings& moved,
+                  int threads, Alignment& out) {
   if (!may_be_mirrored(accepted)) return;
   const AlignMap image = mirrored(source, threads);
+  const auto lies_better = [&](const Transform& T) {
+    const Support mirrored_support = support(target, image, T, kJudgePieces, threads);
+    if (is_better_mirrored(mirrored_support, accepted)) return true;
+    return !moved.p_target.empty() &&
+           is_as_good_mirrored(without_moved_things(target, image, T, mirrored_support, kJudgePieces).rest, moved.rest);
+  };
   for (const Transform& T : mirrored_on_the_spot(source, out.T_target_source, accepted.weak_direction())) {
     const auto hypotheses = find_hypotheses(target, image, Vicinity{T, kMirrorYaw, kMirrorReach}, threads);
     if (hypotheses.empty() || !may_rival(hypotheses.front().support)) continue;
     const GicpResult fine = refine_fully(target, image, hypotheses.front().T_target_source, threads);
     out.iterations += fine.iterations;
-    if (!is_better_mirrored(support(target, image, fine.T_target_source, kJudgePieces, threads), accepted)) continue;
+    if (!lies_better(fine.T_target_source)) continue;
     out.reason = AlignReason::kDiverged;
     out.message =
         "the source's mirror image lies better in the target than the source does: is it another room of the "
@@ -151,11 +168,16 @@ Alignment no_map() {
   return out;
 }
 
-Alignment worded(Alignment out) {
+Alignment worded(Alignment out, const MovedThings& moved) {
   if (!out.accepted()) return out;
   char text[64];
   std::snprintf(text, sizeof text, "aligned: %.0f %% overlap, %.0f mm rms", 100.0 * out.overlap(), 1000.0 * out.rms);
   out.message = text;
+  for (const Eigen::Vector2d& p : moved.p_target) {
+    std::snprintf(text, sizeof text, "%s (%.1f %.1f)", &p == moved.p_target.data() ? "; moved between the two:" : "",
+                  p.x(), p.y());
+    out.message += text;
+  }
   return out;
 }
 
@@ -182,14 +204,17 @@ Alignment align(const AlignMap& target, const AlignMap& source, const std::optio
     fine = settle(target, source, fine, threads);
     found = judge(target, source, fine, origin, threads, out);
   }
+  // Without a guess nothing but what stands in the room tells the place, so nothing is taken out.
+  MovedThings moved{{}, found};
+  if (guess && out.reason == AlignReason::kDiverged) forgive_moved_things(target, source, found, moved, out);
   if (out.accepted()) check_hold(target, source, fine.converged, threads, out);
   if (out.accepted() && vicinity && !is_in(*vicinity, out.T_target_source, middle_of(source))) {
     out.reason = AlignReason::kLowOverlap;
     out.message = "what was found lies farther from the guess than 2 m and 45 degrees; give a better guess, or none";
   }
   if (out.accepted()) find_rivals(target, source, hypotheses, found, threads, out);
-  if (out.accepted()) try_mirrored(target, source, found, threads, out);
-  return worded(std::move(out));
+  if (out.accepted()) try_mirrored(target, source, found, moved, threads, out);
+  return worded(std::move(out), moved);
 }
 
 Alignment recheck(const AlignMap& target, const AlignMap& source, const Transform& T_target_source, int threads) {
@@ -199,7 +224,7 @@ Alignment recheck(const AlignMap& target, const AlignMap& source, const Transfor
   const GicpResult fine = refine_finely(target, source, T_target_source, threads);
   judge(target, source, fine, Origin::kGuess, threads, out);
   if (out.accepted()) check_hold(target, source, fine.converged, threads, out);
-  return worded(std::move(out));
+  return worded(std::move(out), {});
 }
 
 }  // namespace concord

@@ -30,6 +30,8 @@ void agree(AlignDesk::Case& one) {
   one.result.open = false;
 }
 
+bool is_ahead(const AlignDesk::Case& one) { return one.state == State::kWaiting || one.state == State::kRunning; }
+
 /// Said by the watch, until somebody has put it right.
 bool is_standing_offer(const AlignDesk::Case& one) { return one.is_offer && !one.accepted; }
 
@@ -51,15 +53,12 @@ std::size_t AlignDesk::ahead_of(const std::string& id) const {
   std::size_t ahead = 0;
   for (const Case& one : cases_) {
     if (one.request.id == id) break;
-    if (one.state != State::kDone) ++ahead;
+    ahead += is_ahead(one) ? 1 : 0;
   }
   return ahead;
 }
 
-std::size_t AlignDesk::waiting() const {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(cases_, [](const Case& one) { return one.state != State::kDone; }));
-}
+std::size_t AlignDesk::waiting() const { return static_cast<std::size_t>(std::ranges::count_if(cases_, is_ahead)); }
 
 std::size_t AlignDesk::offers() const {
   return static_cast<std::size_t>(std::ranges::count_if(cases_, is_standing_offer));
@@ -106,7 +105,7 @@ bool AlignDesk::give_up(const std::string& id) {
 
 /// Of what people asked for. Those that wait are never among them, nor what the watch says: they are few.
 void AlignDesk::forget_the_oldest() {
-  const auto may_go = [](const Case& one) { return one.state == State::kDone && !is_standing_offer(one); };
+  const auto may_go = [](const Case& one) { return !is_ahead(one) && !is_standing_offer(one); };
   while (std::cmp_greater(std::ranges::count_if(cases_, may_go), kMaxKept)) {
     cases_.erase(std::ranges::find_if(cases_, may_go));
   }
@@ -192,7 +191,7 @@ Result<AlignDesk::Acceptance> AlignDesk::accept(const AlignDecision& decision, c
                                                 bool is_founded, std::int64_t now) {
   if (is_founded) founding_.reset();
   Case* found = find(decision.align_id);
-  if (found == nullptr) return expired(decision.align_id);
+  if (found == nullptr || found->state == State::kDropped) return expired(decision.align_id);
   if (found->state != State::kDone) return refuse(Code::kBusy, "it is not found yet; ask again");
   if (found->accepted) {
     if (found->asked->id == decision.id) return Acceptance{*found->asked, false};
@@ -231,12 +230,19 @@ void AlignDesk::on_merge(const std::string& id, bool ok) {
 }
 
 Result<void> AlignDesk::drop(const AlignDecision& decision) {
-  const Case* found = find(decision.align_id);
+  Case* found = find(decision.align_id);
   if (found == nullptr) return expired(decision.align_id);
   if (found->accepted) {
     return refuse(Code::kConflict, "it was accepted; take it back with: concord undo " + found->asked->id);
   }
-  std::erase_if(cases_, [&](const Case& one) { return one.request.id == decision.align_id; });
+  if (found->is_offer) {
+    std::erase_if(cases_, [&](const Case& one) { return one.request.id == decision.align_id; });
+    return {};
+  }
+  // It is kept: whoever asked does so again until there is an answer.
+  found->state = State::kDropped;
+  found->result = {};
+  forget_the_oldest();
   return {};
 }
 

@@ -21,7 +21,7 @@ class AlignDesk {
   static constexpr std::int64_t kOpenFor = 600'000'000;  ///< microseconds in which it can be accepted
 
   struct Case {
-    enum class State { kWaiting, kRunning, kDone };
+    enum class State { kWaiting, kRunning, kDone, kDropped };
     AlignRequest request;  ///< of an offer only its id and source
     std::uint64_t content = 0;
     State state = State::kWaiting;
@@ -71,7 +71,8 @@ class AlignDesk {
                                           std::int64_t now);
   /// What merge said to what it was asked by this id.
   void on_merge(const std::string& id, bool ok);
-  /// Refused (kExpired): nothing of that id is kept; (kConflict): it was accepted.
+  /// Again by whoever has not heard of it. Refused (kExpired): nothing of that id is kept; (kConflict): it was
+  /// accepted.
   [[nodiscard]] Result<void> drop(const AlignDecision& decision);
 
   /// What people should know now: what can be accepted, and what the watch says. The oldest first.

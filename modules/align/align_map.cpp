@@ -19,6 +19,12 @@ constexpr double kMinUprightCells = 100;
 /// With fewer free blocks than this for each cell of surface, a map was made without free space.
 constexpr double kMinFreeShare = 0.2;
 
+/// Of a cell: thicker surfaces have noise or strays about them.
+constexpr double kNoisy = 0.12;
+constexpr int kStrayRounds = 2;
+
+bool is_noisy(const SurfaceLevel& level) { return level.thickness() > kNoisy * level.size(); }
+
 Result<AlignMap> make(Result<SurfacePoints> points, double resolution, int threads) {
   if (!points) return tl::unexpected(points.error());
   if (are_scattered(*points, resolution)) {
@@ -28,6 +34,10 @@ Result<AlignMap> make(Result<SurfacePoints> points, double resolution, int threa
   out.resolution = resolution;
   out.points = without_loners(std::move(*points), resolution, threads);
   out.levels = make_levels(out.points, resolution, threads);
+  for (int round = 0; round < kStrayRounds && is_noisy(out.fine()); ++round) {
+    out.points = out.fine().without_strays(out.points, threads);
+    out.levels = make_levels(out.points, resolution, threads);
+  }
   out.R_upright_map = upright(out.levels.size() > 1 ? out.levels[1] : out.levels[0]);
   return out;
 }

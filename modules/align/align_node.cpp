@@ -113,6 +113,9 @@ void AlignNode::on_request(AlignRequest request) {
 /// Once more how it stands: what was said may have been lost.
 void AlignNode::tell(const AlignDesk::Case& one) {
   const std::string& id = one.request.id;
+  if (one.state == AlignDesk::Case::State::kDropped) {
+    return replies_.deny(kRequests, id, {Code::kExpired, "it was dropped; ask with a new id"});
+  }
   if (one.state != AlignDesk::Case::State::kDone) {
     const std::size_t ahead = desk_.ahead_of(id);
     const std::string how = ahead == 0 ? "it is being looked at" : std::to_string(ahead) + " are before it";

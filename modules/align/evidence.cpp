@@ -63,9 +63,10 @@ Answer answer(const AlignMap& map, const Eigen::Vector3d& p, const Eigen::Vector
   return map.free.contains(p) ? Answer::kContradicted : Answer::kNothing;
 }
 
-Asked ask(const AlignMap& map, const SurfaceLevel& other, const Transform& T, std::size_t begin, std::size_t end,
-          std::size_t count) {
-  Asked out;
+/// Calls `heard(piece, p_map, n_map, is_upright, area, answer)` for each piece of the other map that is asked.
+template <typename Heard>
+void ask_each(const AlignMap& map, const SurfaceLevel& other, const Transform& T, std::size_t begin, std::size_t end,
+              std::size_t count, const Heard& heard) {
   const double area =
       other.size() * other.size() * static_cast<double>(other.cells().size()) / static_cast<double>(count);
   const double size = std::max(map.fine().size(), other.size());
@@ -73,20 +74,36 @@ Asked ask(const AlignMap& map, const SurfaceLevel& other, const Transform& T, st
     const SurfaceCell& piece = other.cells()[spread(i, count, other.cells().size())];
     if (!piece.is_flat() && !piece.is_solid) continue;
     const bool is_upright = std::abs(piece.normal.z()) < kUprightNormalZ;
-    Verdicts& verdicts = is_upright ? out.upright : out.level;
-    verdicts.all += area;
+    const Eigen::Vector3d p = T * piece.mean.cast<double>();
     const Eigen::Vector3d n = T.linear() * piece.normal.cast<double>();
-    const Answer said = answer(map, T * piece.mean.cast<double>(), n, piece, size);
-    if (said == Answer::kNothing) continue;
-    const bool matched = said == Answer::kMatched;
-    (matched ? verdicts.matched : said == Answer::kDisplaced ? verdicts.displaced : verdicts.contradicted) += area;
-    if (piece.is_solid) {
-      // It holds nothing: an edge may slide along itself. But where it should not be it speaks in all directions.
-      if (!matched) out.against += 0.5 * area * Eigen::Matrix2d::Identity();
-    } else if (is_upright) {
-      (matched ? out.matched : out.against) += area * n.head<2>() * n.head<2>().transpose();
-    }
+    heard(piece, p, n, is_upright, area, answer(map, p, n, piece, size));
   }
+}
+
+/// A solid piece holds nothing: an edge may slide along itself. But where it should not be it speaks in all directions.
+Eigen::Matrix2d facing_against(const SurfaceCell& piece, const Eigen::Vector3d& n, double area) {
+  if (piece.is_solid) return 0.5 * area * Eigen::Matrix2d::Identity();
+  return area * n.head<2>() * n.head<2>().transpose();
+}
+
+Asked ask(const AlignMap& map, const SurfaceLevel& other, const Transform& T, std::size_t begin, std::size_t end,
+          std::size_t count) {
+  Asked out;
+  ask_each(
+      map, other, T, begin, end, count,
+      [&](const SurfaceCell& piece, const Eigen::Vector3d&, const Eigen::Vector3d& n, bool is_upright, double area,
+          Answer said) {
+        Verdicts& verdicts = is_upright ? out.upright : out.level;
+        verdicts.all += area;
+        if (said == Answer::kNothing) return;
+        const bool matched = said == Answer::kMatched;
+        (matched ? verdicts.matched : said == Answer::kDisplaced ? verdicts.displaced : verdicts.contradicted) += area;
+        if (matched && is_upright && !piece.is_solid) {
+          out.matched += area * n.head<2>() * n.head<2>().transpose();
+        } else if (!matched && (is_upright || piece.is_solid)) {
+          out.against += facing_against(piece, n, area);
+        }
+      });
   return out;
 }
 
@@ -101,6 +118,21 @@ Asked ask_all(const AlignMap& map, const AlignMap& other, const Transform& T, st
   Asked out;
   for (const Asked& part : parts) out.add(part);
   return out;
+}
+
+/// `T_target_map`: where who answers lies.
+void collect_against(const AlignMap& map, const AlignMap& other, const Transform& T_map_other,
+                     const Transform& T_target_map, bool is_of_source, std::size_t pieces,
+                     std::vector<PieceAgainst>& out) {
+  const SurfaceLevel& surface = other.fine();
+  const std::size_t count = std::min(surface.cells().size(), pieces);
+  ask_each(map, surface, T_map_other, 0, count, count,
+           [&](const SurfaceCell& piece, const Eigen::Vector3d& p, const Eigen::Vector3d& n, bool is_upright,
+               double area, Answer said) {
+             if (!is_upright || (said != Answer::kDisplaced && said != Answer::kContradicted)) return;
+             out.push_back({(T_target_map * p).head<2>(), facing_against(piece, T_target_map.linear() * n, area), area,
+                            said == Answer::kDisplaced, is_of_source});
+           });
 }
 
 double share(const Verdicts& a, const Verdicts& b) {
@@ -160,6 +192,14 @@ Support support(const AlignMap& target, const AlignMap& source, const Transform&
           of_target.level,
           of_source.matched + R * of_target.matched * R.transpose(),
           of_source.against + R * of_target.against * R.transpose()};
+}
+
+std::vector<PieceAgainst> pieces_against(const AlignMap& target, const AlignMap& source,
+                                         const Transform& T_target_source, std::size_t pieces) {
+  std::vector<PieceAgainst> out;
+  collect_against(target, source, T_target_source, Transform::Identity(), true, pieces, out);
+  collect_against(source, target, T_target_source.inverse(), T_target_source, false, pieces, out);
+  return out;
 }
 
 Matrix6 covariance(const GicpResult& result) {

@@ -47,9 +47,22 @@ struct Support {
   [[nodiscard]] Eigen::Vector2d weak_direction() const;
 };
 
+/// A piece of a wall or of furniture that speaks against.
+struct PieceAgainst {
+  Eigen::Vector2d p_target;
+  Eigen::Matrix2d facing;  ///< its part of Support::against_facing
+  double area = 0.0;       ///< square metres
+  bool is_displaced = false;
+  bool is_of_source = false;
+};
+
 /// `pieces`: how many of each map are asked, spread evenly.
 [[nodiscard]] Support support(const AlignMap& target, const AlignMap& source, const Transform& T_target_source,
                               std::size_t pieces, int threads);
+
+/// What in support(...) of the same arguments is against, upright, piece by piece.
+[[nodiscard]] std::vector<PieceAgainst> pieces_against(const AlignMap& target, const AlignMap& source,
+                                                       const Transform& T_target_source, std::size_t pieces);
 
 /// 6 x 6, rotation about `p_target_centre` then translation, target's axes; of the noise across the surfaces, with
 /// neighbouring cells counted as one measurement.

@@ -43,6 +43,17 @@ constexpr double kMirrorAgainst = 0.004;
 constexpr double kMirroredShare = 1.02;
 constexpr double kMirroredMore = 1.0;  // square metres
 
+/// The right place of a mirror image may have less in common than the wrong one that was found, but hardly anything
+/// against it.
+constexpr double kMirroredWalls = 0.5;    // of those that lie right in the place that was found
+constexpr double kMirroredAgainst = 0.5;  // of what is against there
+
+/// What is left without moved things. Of right places up to 0.1 % was against; where it was of wrong ones, up to 35 m2
+/// of walls lay on each other, halves of small rooms, or a mirror image was as good.
+constexpr double kMaxRestAgainst = 0.001;
+constexpr double kMinRestWalls = 40.0;  // square metres, both ways
+constexpr double kMaxMirroredRestAgainst = 0.002;
+
 const Gates& gates_for(Origin origin) { return origin == Origin::kGuess ? kWithGuess : kWithoutGuess; }
 
 double overlap(const Support& s) { return std::max(s.overlap_source(), s.overlap_target()); }
@@ -54,6 +65,10 @@ double between(double room, double building, double walls) {
 
 double contradicted_share(const Verdicts& v) {
   return v.matched + v.contradicted > 0.0 ? v.contradicted / (v.matched + v.contradicted) : 0.0;
+}
+
+bool has_enough_walls(const Support& mirrored, const Support& found) {
+  return mirrored.upright().matched >= kMirroredWalls * found.upright().matched;
 }
 
 /// Whether floors and ceilings say that the heights are wrong.
@@ -116,6 +131,12 @@ GateAnswer check_gates(const Support& s, Origin origin) {
   return {};
 }
 
+bool agrees_but_for_moved_things(const Support& rest) {
+  const Verdicts upright = rest.upright();
+  return upright.matched >= kMinRestWalls && upright.share_against() <= kMaxRestAgainst &&
+         check_gates(rest, Origin::kGuess).reason == AlignReason::kAccepted;
+}
+
 bool may_rival(const Support& rough) {
   return overlap(rough) >= kWithGuess.min_overlap && rough.upright().share_against() <= kRoughAgainst &&
          rough.level().share_against() <= kRoughLevelAgainst;
@@ -135,8 +156,15 @@ bool may_be_mirrored(const Support& accepted) {
 }
 
 bool is_better_mirrored(const Support& mirrored, const Support& accepted) {
-  return overlap(mirrored) >= kWithGuess.min_overlap &&
-         mirrored.score() > kMirroredShare * accepted.score() + kMirroredMore;
+  if (overlap(mirrored) < kWithGuess.min_overlap) return false;
+  return mirrored.score() > kMirroredShare * accepted.score() + kMirroredMore ||
+         (has_enough_walls(mirrored, accepted) &&
+          mirrored.upright().share_against() < kMirroredAgainst * accepted.upright().share_against());
+}
+
+bool is_as_good_mirrored(const Support& mirrored_rest, const Support& accepted_rest) {
+  return overlap(mirrored_rest) >= kWithGuess.min_overlap && has_enough_walls(mirrored_rest, accepted_rest) &&
+         mirrored_rest.upright().share_against() <= kMaxMirroredRestAgainst;
 }
 
 bool ranks_before(const Support& a, const Support& b) {

@@ -21,6 +21,10 @@ struct GateAnswer {
 /// What a place must show to be believed, were it the only one: kAccepted, kLowOverlap, kDegenerate or kDiverged.
 [[nodiscard]] GateAnswer check_gates(const Support& support, Origin origin);
 
+/// Whether a place that is contradicted is to be believed for what is left without the things that were moved: enough
+/// walls, and next to nothing against them. Two things are all the furniture that many a room has.
+[[nodiscard]] bool agrees_but_for_moved_things(const Support& rest);
+
 /// Whether a place, roughly refined, may turn out to be a rival.
 [[nodiscard]] bool may_rival(const Support& rough);
 /// Whether a refined place speaks against another one that passed the gates: enough overlap, and little against it, or
@@ -33,6 +37,8 @@ struct GateAnswer {
 /// Whether the source's mirror image lies better in the target than the source itself does: one of the two is
 /// mirrored, or they are two rooms of one plan.
 [[nodiscard]] bool is_better_mirrored(const Support& mirrored, const Support& accepted);
+/// Of both what is left without moved things: nearly as good is too good, since what told them apart may be taken out.
+[[nodiscard]] bool is_as_good_mirrored(const Support& mirrored_rest, const Support& accepted_rest);
 
 /// Which of two places to look at first: those with enough overlap, then by score.
 [[nodiscard]] bool ranks_before(const Support& a, const Support& b);

@@ -21,6 +21,7 @@ constexpr double kMaxThickness = 0.15;
 constexpr double kMinSolidShare = 0.25;
 constexpr double kMinSolidPoints = 2.0;
 constexpr int kMinSolidNeighbours = 6;
+constexpr double kStray = 2.0;  // standard deviations across
 /// Where to look for free space on either side, in cells.
 constexpr double kNearSide = 2.0;
 constexpr double kFarSide = 3.5;
@@ -83,6 +84,41 @@ SurfaceLevel::SurfaceLevel(const SurfaceLevel& finer, double size, int threads) 
   find_planes(threads);
 }
 
+/// Of the points in the 27 cells around; `neighbours`: how many of them are taken.
+Moments SurfaceLevel::around(VoxelIndex cell, int& neighbours) const {
+  Moments out;
+  neighbours = 0;
+  CellTable::Cursor cursor(table_);
+  for (int step = 0; step < 27; ++step) {
+    const int found = cursor.find({cell.x + step % 3 - 1, cell.y + step / 3 % 3 - 1, cell.z + step / 9 - 1});
+    if (found < 0) continue;
+    out.add(moments_[found]);
+    ++neighbours;
+  }
+  return out;
+}
+
+SurfacePoints SurfaceLevel::without_strays(const SurfacePoints& points, int threads) const {
+  std::vector<Eigen::Vector3d> means(cells_.size());
+  for_each_chunk(threads, chunks_of(cells_.size(), kCellsPerChunk), [&](std::size_t chunk) {
+    const std::size_t end = std::min(cells_.size(), (chunk + 1) * kCellsPerChunk);
+    for (std::size_t i = chunk * kCellsPerChunk; i < end; ++i) {
+      int neighbours = 0;
+      const Moments moments = around(table_.cells()[i], neighbours);
+      means[i] = moments.sum / moments.count;
+    }
+  });
+  SurfacePoints out;
+  CellTable::Cursor cursor(table_);
+  for (const Eigen::Vector3f& point : points) {
+    const Eigen::Vector3d p = point.cast<double>();
+    const int cell = cursor.find(cell_of(p, per_metre_));
+    const Eigen::Vector3d n = cells_[cell].normal.cast<double>();
+    if (std::abs(n.dot(p - means[cell])) <= kStray * thickness_) out.push_back(point);
+  }
+  return out;
+}
+
 void SurfaceLevel::find_planes(int threads) {
   cells_.resize(moments_.size());
   std::vector<char> crowded(moments_.size());
@@ -90,17 +126,8 @@ void SurfaceLevel::find_planes(int threads) {
   for_each_chunk(threads, chunks_of(cells_.size(), kCellsPerChunk), [&](std::size_t chunk) {
     const std::size_t end = std::min(cells_.size(), (chunk + 1) * kCellsPerChunk);
     for (std::size_t i = chunk * kCellsPerChunk; i < end; ++i) {
-      const VoxelIndex at = table_.cells()[i];
-      Moments around;
       int neighbours = 0;
-      CellTable::Cursor cursor(table_);
-      for (int step = 0; step < 27; ++step) {
-        const int found = cursor.find({at.x + step % 3 - 1, at.y + step / 3 % 3 - 1, at.z + step / 9 - 1});
-        if (found < 0) continue;
-        around.add(moments_[found]);
-        ++neighbours;
-      }
-      const Plane plane = plane_of(around);
+      const Plane plane = plane_of(around(table_.cells()[i], neighbours));
       cells_[i] = {(moments_[i].sum / moments_[i].count).cast<float>(), plane.normal};
       thickness[i] = plane.thickness;
       crowded[i] = neighbours >= kMinSolidNeighbours;

@@ -47,6 +47,9 @@ class SurfaceLevel {
   [[nodiscard]] const std::vector<SurfaceCell>& cells() const { return cells_; }
   /// Metres across the median flat piece, one standard deviation: what is left of noise and lattice.
   [[nodiscard]] double thickness() const { return thickness_; }
+  /// The points without those that lie off the plane around them, by over twice the thickness: strays near a wall make
+  /// it look thick. What is around no plane stays. @pre the points that this was made of.
+  [[nodiscard]] SurfacePoints without_strays(const SurfacePoints& points, int threads) const;
   /// Turns the normals of cells that `is_free` on one side only.
   void orient(const std::function<bool(const Eigen::Vector3d&)>& is_free);
   /// The cell with the nearest mean among the eight whose centres are nearest; none: null. It finds whatever lies
@@ -55,6 +58,7 @@ class SurfaceLevel {
 
  private:
   void find_planes(int threads);
+  [[nodiscard]] Moments around(VoxelIndex cell, int& neighbours) const;
   void find_solids(const std::vector<char>& crowded);
 
   [[nodiscard]] double median_of_flat(const std::vector<double>& values) const;

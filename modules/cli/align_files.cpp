@@ -12,6 +12,7 @@
 #include "cli/align_page.hpp"
 #include "cli/align_report.hpp"
 #include "cli/cloud_file.hpp"
+#include "cli/extension.hpp"
 #include "cli/map_file.hpp"
 
 namespace concord {
@@ -27,7 +28,7 @@ struct Loaded {
 };
 
 Result<Loaded> load(const std::string& file) {
-  const auto extension = std::filesystem::path(file).extension();
+  const std::string extension = extension_of(file);
   if (extension != ".pcd" && extension != ".ply") {
     auto map = load_map(file);
     if (!map) return tl::unexpected(map.error());
@@ -58,7 +59,7 @@ tl::unexpected<Failure> fail_on(const std::string& file, const Error& error) {
 }  // namespace
 
 bool is_alignable_file(const std::string& name) {
-  const auto extension = std::filesystem::path(name).extension();
+  const std::string extension = extension_of(name);
   return extension == ".bt" || extension == ".ot" || extension == ".pcd" || extension == ".ply";
 }
 

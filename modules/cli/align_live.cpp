@@ -164,7 +164,9 @@ Outcome decide_alignment(const std::string& align_id, bool accept, const std::st
   const AlignDecision decision{live.id_or_new(id), author_or_user(author),
                                accept ? AlignDecision::Op::kAccept : AlignDecision::Op::kDrop, align_id,
                                live.bus().now()};
-  return print_revision(decide(live, decision), common);
+  auto answer = decide(live, decision);
+  if (answer && accept) answer->message += "; take it back with: concord undo " + answer->id;
+  return print_revision(answer, common);
 }
 
 Outcome list_alignments(const Common& common) {

@@ -17,6 +17,7 @@
 #include <pcl/point_types.h>
 
 #include "align/surface.hpp"
+#include "cli/extension.hpp"
 
 namespace concord {
 namespace {
@@ -241,8 +242,9 @@ Result<std::vector<Eigen::Vector3f>> read_ply(const fs::path& file, double spaci
 }  // namespace
 
 Result<std::vector<Eigen::Vector3f>> read_cloud(const fs::path& file, double spacing) {
-  const bool is_pcd = file.extension() == ".pcd";
-  if (!is_pcd && file.extension() != ".ply") return refuse(Code::kBadName, file.string() + " must end in .pcd or .ply");
+  const std::string extension = extension_of(file);
+  const bool is_pcd = extension == ".pcd";
+  if (!is_pcd && extension != ".ply") return refuse(Code::kBadName, file.string() + " must end in .pcd or .ply");
   if (const auto fine = check_claims(file); !fine) return tl::unexpected(fine.error());
   pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);  // what went wrong is in the refusal
   try {

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/extension.hpp"
 #include "cli/map_file.hpp"
 #include "cli/numbers.hpp"
 #include "cli/parts.hpp"
@@ -36,7 +37,7 @@ std::string as_pcd(const std::vector<Eigen::Vector3f>& points) {
 }
 
 Outcome downsample(const Options& options, const Common& common) {
-  const std::string extension = std::filesystem::path(options.out).extension();
+  const std::string extension = extension_of(options.out);
   if (extension != ".pcd" && extension != ".csv") {
     return fail(Exit::kUnusable, "BAD_NAME", options.out + " must end in .pcd or .csv");
   }

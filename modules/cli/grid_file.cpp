@@ -2,6 +2,7 @@
 
 #include <sstream>
 
+#include "cli/extension.hpp"
 #include "cli/map_file.hpp"
 #include "planner/files/map_server.hpp"
 #include "store/whole_file.hpp"
@@ -38,7 +39,7 @@ Result<GridExtent> extent_of(const Grid& grid) {
 }
 
 Result<void> save_grid(const std::filesystem::path& pgm, const Grid& grid, const GridExtent& extent) {
-  if (pgm.extension() != ".pgm") return refuse(Code::kBadName, pgm.string() + " must end in .pgm");
+  if (extension_of(pgm) != ".pgm") return refuse(Code::kBadName, pgm.string() + " must end in .pgm");
   if (extent.width() * extent.height() > kMaxCells) {
     return refuse(Code::kTooLarge, "the grid has " + std::to_string(extent.width()) + " x " +
                                        std::to_string(extent.height()) + " cells, over 100 million");

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "cli/command.hpp"
+#include "cli/extension.hpp"
 #include "cli/history.hpp"
 #include "cli/map_file.hpp"
 #include "cli/numbers.hpp"
@@ -43,7 +44,7 @@ Result<HistoryRequest> request_of(const Options& options, std::int64_t now) {
 
 Outcome export_to(const std::string& file, const std::vector<Operation>& operations, double resolution,
                   const Common& common) {
-  const bool as_csv = std::filesystem::path(file).extension() == ".csv";
+  const bool as_csv = extension_of(file) == ".csv";
   const auto written = write_file(
       file, as_csv
                 ? to_csv(operations, resolution)
@@ -55,7 +56,7 @@ Outcome export_to(const std::string& file, const std::vector<Operation>& operati
 }
 
 Outcome history(const Options& options, const Common& common) {
-  const std::string extension = std::filesystem::path(options.file).extension();
+  const std::string extension = extension_of(options.file);
   if (!options.file.empty() && extension != ".csv" && extension != ".json") {
     return fail(Exit::kUnusable, "BAD_NAME", options.file + " must end in .json or .csv");
   }

@@ -4,6 +4,7 @@
 
 #include "cli/archive_info.hpp"
 #include "cli/command.hpp"
+#include "cli/extension.hpp"
 #include "cli/map_file.hpp"
 #include "cli/numbers.hpp"
 #include "store/whole_file.hpp"
@@ -38,7 +39,7 @@ Outcome info_archive(const std::string& file, const Common& common) {
 }
 
 Outcome info(const std::string& file, const Common& common) {
-  if (std::filesystem::path(file).extension() == ".concord") return info_archive(file, common);
+  if (extension_of(file) == ".concord") return info_archive(file, common);
   const auto loaded = load_map(file);
   if (!loaded) return fail(loaded.error());
   const BrickMap& map = loaded->map;

@@ -1,5 +1,6 @@
 #include "cli/map_file.hpp"
 
+#include "cli/extension.hpp"
 #include "core/octomap_writer.hpp"
 #include "store/whole_file.hpp"
 
@@ -9,8 +10,9 @@ namespace {
 namespace fs = std::filesystem;
 
 Result<OctomapFormat> format_of(const fs::path& file) {
-  if (file.extension() == ".bt") return OctomapFormat::kBinary;
-  if (file.extension() == ".ot") return OctomapFormat::kFull;
+  const std::string extension = extension_of(file);
+  if (extension == ".bt") return OctomapFormat::kBinary;
+  if (extension == ".ot") return OctomapFormat::kFull;
   return refuse(Code::kBadName, file.string() + " must end in .bt or .ot");
 }
 

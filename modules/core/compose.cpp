@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
-#include <thread>
+#include <future>
 
 #include "core/tile_puller.hpp"
 
@@ -130,14 +130,17 @@ TileFolder& tile_folder() {
   return folder;
 }
 
-/// Calls `work(first, last, part)` for equal parts of 0 to `count`, each on its own thread.
+/// Calls `work(first, last, part)` for equal parts of 0 to `count`, each on its own thread, and waits for all.
+/// @throws what `work` throws: there may not be memory for the map.
 template <class Work>
 void in_parts(std::size_t count, int parts, Work&& work) {
   const auto begin = [&](int part) { return count * part / parts; };
-  std::vector<std::thread> threads;
-  for (int part = 1; part < parts; ++part) threads.emplace_back(work, begin(part), begin(part + 1), part);
+  std::vector<std::future<void>> others;
+  for (int part = 1; part < parts; ++part) {
+    others.push_back(std::async(std::launch::async, [&, part] { work(begin(part), begin(part + 1), part); }));
+  }
   work(begin(0), begin(1), 0);
-  for (std::thread& thread : threads) thread.join();
+  for (std::future<void>& other : others) other.get();
 }
 
 Brick conflict_brick(const VoxelMask& conflicts) { return Brick::uniform(conflicts, kOccupied); }

@@ -107,14 +107,16 @@ void AssetsNode::take_out(const AssetRequest& request) {
 
 /// What is to be moved or taken out, where it is now.
 Result<Labels::Injected> AssetsNode::meant(const AssetRequest& request) const {
-  if (!request.of.empty()) {
-    const auto there = where_is(request.of, parts_.labels);
-    if (!there) return refuse(Code::kNotFound, "nothing that " + request.of + " injected is in the map");
-    return *there;
-  }
   for (const auto& [injection, there] : placed(parts_.labels)) {
-    if (parts_.labels.owner_of(there.request_id) == request.instance) return there;
+    const bool is_meant =
+        request.of.empty() ? parts_.labels.owner_of(there.request_id) == request.instance : injection == request.of;
+    if (is_meant) return there;
   }
+  // After a restart it is merge that knows what is in the map.
+  if (!is_up_to_date()) {
+    return refuse(Code::kBusy, "semantic has just begun and does not know all edits yet; ask again");
+  }
+  if (!request.of.empty()) return refuse(Code::kNotFound, "nothing that " + request.of + " injected is in the map");
   return refuse(Code::kNotFound, "no asset in the map is instance " + std::to_string(request.instance.instance) +
                                      " of class " + std::to_string(request.instance.label));
 }

@@ -205,7 +205,9 @@ TEST_F(AlignStation, RequestsQueueAndCanBeDropped) {
   for (int i = 1; i < 16; ++i) {
     EXPECT_TRUE(decide("d" + std::to_string(i), AlignDecision::Op::kDrop, "a" + std::to_string(i)).ok);
   }
-  EXPECT_EQ(decide("d", AlignDecision::Op::kDrop, "a3").code, "EXPIRED");
+  EXPECT_TRUE(decide("d3", AlignDecision::Op::kDrop, "a3").ok) << "the answer may have been lost";
+  EXPECT_EQ(request(guess_of("a3", "robot2", "", kT_map_left * kT_left_right)).code, "EXPIRED") << "who asked asks on";
+  EXPECT_EQ(decide("e", AlignDecision::Op::kAccept, "a3").code, "EXPIRED");
   run();
   EXPECT_EQ(counters_.all().at("requests.ACCEPTED"), 1) << "what was dropped was carried out";
 }

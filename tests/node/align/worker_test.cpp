@@ -77,7 +77,10 @@ TEST_F(BesideStation, WhatIsDroppedStopsAndIsNotAnswered) {
   run();
   EXPECT_TRUE(answers_.empty()) << answers_.back().message;
   EXPECT_TRUE(results_.empty());
-  EXPECT_EQ(decide("e", AlignDecision::Op::kDrop, "a").code, "EXPIRED");
+  const Transform T = kT_map_left * kT_left_right;
+  EXPECT_EQ(request(guess_of("a", "robot2", "", T)).code, "EXPIRED") << "who asked goes on asking";
+  run();
+  EXPECT_TRUE(results_.empty()) << "it was carried out anew";
 }
 
 TEST_F(BesideStation, TheProcessEndsWhileItComputes) {

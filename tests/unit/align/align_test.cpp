@@ -113,6 +113,32 @@ TEST(Align, RefusesAMirroredRoom) {
   EXPECT_FALSE(align(target, source, Transform::Identity(), 1).accepted());
 }
 
+/// The parts with a cupboard in each, moved by `by` between the two.
+Parts with_a_moved_cupboard(Points left, Points right, const Eigen::Vector3d& by) {
+  const Eigen::Vector3d low(-0.6, 0.7, 0.0);
+  const Eigen::Vector3d size(0.8, 0.4, 1.6);
+  add_box(left, low, low + size, false);
+  add_box(right, low + by, low + by + size, false);
+  const Transform T = transform(3.0, -1.0, 0.4, 0.7);
+  return {cloud_map(left), cloud_map(moved(right, T.inverse())), T};
+}
+
+TEST(Align, AGuessIsBelievedThoughACupboardWasMoved) {
+  const Points right = kept(room(), [](const Eigen::Vector3f& p) { return p.x() > -1.7F; });
+  const Parts parts = with_a_moved_cupboard(room(), right, {0.4, -1.6, 0.0});
+  const Alignment answer = align(parts.target, parts.source, parts.T_target_source, 1);
+  expect_found(parts, answer);
+  EXPECT_GT(answer.against_upright, 0.025) << "nothing was to be forgiven";
+  EXPECT_NE(answer.message.find("moved between the two"), std::string::npos) << answer.message;
+  EXPECT_EQ(align(parts.target, parts.source, std::nullopt, 1).reason, AlignReason::kDiverged) << "nobody says where";
+  EXPECT_FALSE(recheck(parts.target, parts.source, parts.T_target_source, 1).accepted()) << "the watch says so";
+}
+
+TEST(Align, RefusesAMirroredRoomInWhichACupboardWasMoved) {
+  const Parts parts = with_a_moved_cupboard(left_part(), mirrored(room()), {0.4, -1.6, 0.0});
+  EXPECT_FALSE(align(parts.target, parts.source, parts.T_target_source, 1).accepted());
+}
+
 TEST(Align, RefusesAnotherRoom) {
   const AlignMap target = cloud_map(room());
   const AlignMap source = cloud_map(other_room());

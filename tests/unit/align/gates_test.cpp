@@ -66,5 +66,29 @@ TEST(Gates, LetOneDirectionSpeak) {
   EXPECT_EQ(check_gates(s, Origin::kGuess).reason, AlignReason::kDiverged);
 }
 
+TEST(Gates, WantWallsAndNothingAgainstThemWhereThingsWereMoved) {
+  Support rest = a_good_place();
+  rest.source_upright.displaced = 0.1;  // of 120 m2
+  EXPECT_TRUE(agrees_but_for_moved_things(rest));
+  rest.source_upright.displaced = 0.3;
+  EXPECT_FALSE(agrees_but_for_moved_things(rest));
+  rest = a_good_place();
+  rest.source_upright = rest.target_upright = {30.0, 19.0, 0.0, 0.0};
+  EXPECT_FALSE(agrees_but_for_moved_things(rest)) << "half a small room laid over the other half";
+}
+
+TEST(Gates, KnowAMirrorImageThatHasLessInCommonButNothingAgainst) {
+  Support found = a_good_place();
+  found.source_upright.displaced = 3.0;
+  Support mirrored = a_good_place();
+  mirrored.source_upright.matched = mirrored.target_upright.matched = 32.0;
+  EXPECT_TRUE(is_better_mirrored(mirrored, found));
+  mirrored.source_upright.displaced = 2.0;
+  EXPECT_FALSE(is_better_mirrored(mirrored, found)) << "as much is against it";
+  mirrored = a_good_place();
+  mirrored.source_upright.matched = mirrored.target_upright.matched = 28.0;
+  EXPECT_FALSE(is_better_mirrored(mirrored, found)) << "any corner lies somewhere";
+}
+
 }  // namespace
 }  // namespace concord
