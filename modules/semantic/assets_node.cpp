@@ -126,8 +126,9 @@ Result<LabelCorrection::Claim> AssetsNode::claim_of(const AssetRequest& request)
   if (request.op == AssetRequest::Op::kMove) {
     const auto there = meant(request);
     if (!there) return tl::unexpected(there.error());
-    label.name = parts_.labels.classes().at(there->of.label).name;
-    label.of.instance = there->of.instance;
+    const InstanceId of = parts_.labels.owner_of(there->request_id).value_or(there->of);
+    label.name = parts_.labels.classes().at(of.label).name;
+    label.of.instance = of.instance;
     return claim_of(std::move(label), {there->what.asset, request.T_map_asset, there->edit_id}).map([&](auto claim) {
       claim.edit_id = edit_of_asset(request.id);
       return claim;
