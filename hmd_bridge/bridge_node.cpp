@@ -38,12 +38,12 @@ Hub::Config hub_config(const Site& site) {
   return config;
 }
 
-BridgeNode::BridgeNode(const NodeContext& context, Gate& gate, const Hub::Config& config)
+BridgeNode::BridgeNode(const NodeContext& context, Gate& gate, const Hub::Config& config, std::string models)
     : context_(context),
       hub_(gate, config, handlers()),
       world_(context, hub_),
       asker_(context),
-      desk_(context, hub_, world_, asker_),
+      desk_(context, hub_, world_, asker_, std::move(models)),
       own_maps_(desk_) {
   world_.on_path = [this](const concord::Path& path) { on_path(path); };
   hear_parts();
@@ -106,6 +106,7 @@ void BridgeNode::hear_parts() {
   gather(desk_, "out/history", desk_.history);
   gather(desk_, "out/conflict_list", desk_.conflicts);
   gather(desk_, "out/downsampled", desk_.points);
+  gather(desk_, "out/label_list", desk_.labels);
   listen<MapList>(context_.bus, context_.counters, context_.process, "out/map_list",
                   [this](const std::string&, MapList list) {
                     if (!desk_.watched.contains(list.id)) return;

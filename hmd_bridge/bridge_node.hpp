@@ -12,7 +12,8 @@ namespace concord::hmd {
 /// The bridge between the bus and its clients, whatever carries them: a server feeds the hub, a test may too.
 class BridgeNode {
  public:
-  BridgeNode(const NodeContext& context, Gate& gate, const Hub::Config& config);
+  /// @param models the address below which NAME.glb is an asset's model, for who is told of it.
+  BridgeNode(const NodeContext& context, Gate& gate, const Hub::Config& config, std::string models = "/models/");
   BridgeNode(const BridgeNode&) = delete;
   BridgeNode& operator=(const BridgeNode&) = delete;
 

@@ -21,6 +21,9 @@ constexpr std::chrono::milliseconds kWait(5);  ///< the bus's timers are due to 
 constexpr std::chrono::milliseconds kFarewell(300);
 constexpr int kTurns = 64;  ///< of clients, between two of the bus
 
+/// Where models are is told to who may know it, and changes with each start.
+std::string models_address() { return "/models/" + random_secret() + "/"; }
+
 StaticFiles load_files(const std::filesystem::path& web) {
   StaticFiles files;
   if (const auto added = files.add(web, "/"); !added) {
@@ -54,14 +57,18 @@ class BridgeProcess::Parts {
       : gate(random_secret),
         tokens(token_file(context.site)),
         files(load_files(options.web)),
-        node(context, gate, hub_config(context.site)),
+        models(models_address()),
+        node(context, gate, hub_config(context.site), models),
         server(io, node.hub(), gate, tokens, files, server_config(context.site, options.listener),
-               [&bus = context.bus] { return bus.now(); }) {}
+               [&bus = context.bus] { return bus.now(); }) {
+    files.serve_models(models, context.site.state / "assets" / "gltf");
+  }
 
   asio::io_context io{1};
   Gate gate;
   TokenStore tokens;
   StaticFiles files;
+  std::string models;
   BridgeNode node;
   Server server;
   std::unique_ptr<asio::posix::stream_descriptor> bus_ready;

@@ -28,13 +28,14 @@ using Granted = tl::expected<T, No>;
 /// What every request is worked on with, and what more than one kind of request needs.
 class Desk {
  public:
-  Desk(const NodeContext& node, Hub& clients, World& stack, Asker& asking)
-      : context(node), hub(clients), world(stack), asker(asking) {}
+  Desk(const NodeContext& node, Hub& clients, World& stack, Asker& asking, std::string models_at)
+      : context(node), hub(clients), world(stack), asker(asking), models(std::move(models_at)) {}
 
   NodeContext context;
   Hub& hub;
   World& world;
   Asker& asker;
+  const std::string models;  ///< the address below which NAME.glb is an asset's model
 
   [[nodiscard]] std::string id(const Ask& ask) const { return asker.id_of(ask.session, ask.id); }
   [[nodiscard]] std::int64_t now() const { return context.bus.now(); }
@@ -77,6 +78,7 @@ class Desk {
   std::map<std::string, std::map<std::int32_t, ConflictList>> conflicts;
   std::map<std::string, std::map<std::int32_t, Downsampled>> points;
   std::map<std::string, MapList> maps;
+  std::map<std::string, std::map<std::int32_t, LabelList>> labels;
   std::map<std::string, concord::Path> paths;
   std::set<std::string> watched;  ///< requests whose path or list of maps is waited for
 

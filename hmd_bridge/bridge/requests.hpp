@@ -34,6 +34,9 @@ void work_on(Desk& desk, const Ask& ask, const DetectionRejectRequest& request);
 void work_on(Desk& desk, const Ask& ask, const LabelsRequest& request);
 void work_on(Desk& desk, const Ask& ask, const InstancesRequest& request);
 void work_on(Desk& desk, const Ask& ask, const LabelRequest& request);
+void work_on(Desk& desk, const Ask& ask, const LabelTouchRequest& request);
+void work_on(Desk& desk, const Ask& ask, const LabelRenameRequest& request);
+void work_on(Desk& desk, const Ask& ask, const InstanceReassignRequest& request);
 void work_on(Desk& desk, const Ask& ask, const InstanceDeleteRequest& request);
 void work_on(Desk& desk, const Ask& ask, const LabelDeleteRequest& request);
 void work_on(Desk& desk, const Ask& ask, const ZoneAddRequest& request);
@@ -55,6 +58,11 @@ void work_on(Desk& desk, const Ask& ask, const SaveRequest& request);
 void work_on(Desk& desk, const Ask& ask, const MapsRequest& request);
 void work_on(Desk& desk, const Ask& ask, const LoadRequest& request);
 void work_on(Desk& desk, const Ask& ask, const SendMapRequest& request);
+
+/// Undo or redo of a label correction: the part of its id after kLabelUndo.
+void undo_label(Desk& desk, const Ask& ask, const std::string& correction, bool redo);
+/// What undo ids of label corrections begin with, so that they are told from edits' (a request's id has no slash).
+inline constexpr std::string_view kLabelUndo = "label/";
 
 /// Hears what the align process says; once, at the start.
 void hear_alignments(Desk& desk);

@@ -29,11 +29,13 @@ Granted<Looked> layer_of(Desk& desk, const Ask& ask, const ViewRequest& request)
     if (copy == nullptr) return no(Code::kTooLarge, "as many agents are looked at as can be");
     return Looked{copy, copy->number()};
   }
-  if (request.layer == Layer::kLabels) return no(Code::kUnavailable, "no process of this stack labels");
+  if (request.layer == Layer::kLabels && !desk.world.alive("semantic"))
+    return no(Code::kUnavailable, "no process of this stack labels");
   const auto where = desk.place(ask, request.frame);
   if (!where) return tl::unexpected(where.error());
   const std::uint32_t stream = request.layer == Layer::kMap            ? kMapStream
                                : request.layer == Layer::kConflicts    ? kConflictStream
+                               : request.layer == Layer::kLabels       ? kLabelStream
                                : request.layer == Layer::kGridOccupied ? kGridOccupiedStream
                                                                        : kGridFreeStream;
   return Looked{nullptr, stream, where->T_map_frame};

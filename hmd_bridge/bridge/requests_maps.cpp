@@ -63,10 +63,12 @@ void load(Desk& desk, const Ask& ask, const LoadRequest& request, const std::str
     return desk.hub.refuse(ask, Code::kBadRequest, "the agents of a concord file keep their names");
   const MapRequest load{desk.id(ask), MapRequest::Op::kLoad,      request.map, format,
                         false,        request.agent.value_or(""), desk.now()};
-  // A native map is checked by merge, taken in by ingest, and corrected by merge: both are asked until both have it.
+  // A native map is checked by merge, taken in by ingest, corrected by merge, labelled by semantic: all are asked until
+  // all have it.
   Asker::Question question{"in/map_request", encode(load, desk.now()), load.id, {}, {}, Asker::kLoadPatience,
                            kLoadAgain};
   if (native) question.processes = {"ingest", "merge"};
+  if (native && desk.world.alive("semantic")) question.processes.insert("semantic");
   const std::string agent = request.agent.value_or(request.map);
   desk.asker.ask(std::move(question), [&desk, ask, agent](const Answer& answer) {
     if (!answer.ok) return desk.hub.refuse(ask, load_code(answer.code), answer.message);

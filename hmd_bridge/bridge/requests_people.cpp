@@ -60,6 +60,7 @@ Granted<concord::ZoneRequest> zone_of(Desk& desk, const Ask& ask, const std::str
 }
 
 void undo_or_redo(Desk& desk, const Ask& ask, const std::string& edit, bool redo) {
+  if (edit.starts_with(kLabelUndo)) return undo_label(desk, ask, edit.substr(kLabelUndo.size()), redo);
   if (!is_request_id(edit)) return desk.hub.refuse(ask, Code::kNotFound, "no edit has this id");
   const concord::UndoRequest undo{desk.id(ask), desk.author(ask), edit, redo, desk.now()};
   if (redo) {

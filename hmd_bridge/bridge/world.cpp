@@ -43,6 +43,8 @@ World::World(const NodeContext& context, Hub& hub)
              .second = kGridFreeStream,
              .shown_second = free_cells,
              .levels = 1}),
+      labels_(context, hub),
+      things_(context, hub),
       zones_(context.bus, context.counters, "out/zones",
              [this](const std::vector<concord::Zone>& zones) {
                ZonesEvent event;
@@ -157,6 +159,7 @@ void World::publish_layers() {
   map_.publish();
   conflicts_.publish();
   grid_.publish();
+  labels_.publish();
   for (auto& [id, layer] : agent_layers_) layer->publish();
 }
 

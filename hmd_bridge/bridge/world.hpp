@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "bridge/label_copy.hpp"
+#include "bridge/things.hpp"
 #include "bus/brick_stream.hpp"
 #include "bus/list_stream.hpp"
 #include "bus/messages.hpp"
@@ -78,6 +80,7 @@ class World {
   [[nodiscard]] const concord::Path* active_path(const std::string& robot) const;
   [[nodiscard]] std::vector<const concord::Path*> active_paths() const;
   [[nodiscard]] const std::vector<concord::Zone>& zones() const { return zones_.items(); }
+  [[nodiscard]] const Things& things() const { return things_; }
   [[nodiscard]] bool alive(const std::string& process) const;
   /// The highest revision of people's corrections that was seen.
   [[nodiscard]] std::int64_t corrections() const { return corrections_; }
@@ -111,6 +114,8 @@ class World {
   NodeContext context_;
   Hub& hub_;
   LayerCopy map_, conflicts_, grid_;
+  LabelCopy labels_;
+  Things things_;
   ListReceiver<concord::Zone> zones_;
   ListReceiver<concord::Lease> leases_;
   std::map<std::string, std::unique_ptr<LayerCopy>> agent_layers_;

@@ -55,6 +55,19 @@ struct BlockContent {
   std::vector<ChunkBits> chunks;  ///< one for each bit of `filled`, lowest first
 };
 
+/// What a block's voxels are labelled.
+struct LabelContent {
+  struct Thing {
+    std::uint32_t label = 0, instance = 0;
+  };
+  struct Run {
+    std::uint32_t gap = 0, length = 0, thing = 0;
+  };
+  BlockIndex block;
+  std::vector<Thing> things;
+  std::vector<Run> runs;  ///< of voxels x + 64 y + 4096 z; the gap counts from the end of the run before
+};
+
 /// One mesh of a look; without vertices it is gone.
 struct MeshPart {
   std::uint32_t number = 0;
@@ -96,6 +109,9 @@ struct BinaryFrame {
 [[nodiscard]] Result<BlockContent> read_block(const BinaryFrame& frame);
 [[nodiscard]] Bytes forget_payload(const std::vector<BlockIndex>& blocks);
 [[nodiscard]] Result<std::vector<BlockIndex>> read_forget(const BinaryFrame& frame);
+[[nodiscard]] Bytes labels_payload(const LabelContent& content);
+/// Refused: what is no labels frame's payload, byte by byte (kMalformed).
+[[nodiscard]] Result<LabelContent> read_labels(const BinaryFrame& frame);
 [[nodiscard]] Bytes points_payload(const std::vector<Eigen::Vector3f>& points);
 
 /// Refused: more or less than the header says (kMalformed), over 1024 parts or 500,000 vertices or triangles

@@ -142,6 +142,46 @@ Bytes points_payload(const std::vector<Eigen::Vector3f>& points) {
   return out;
 }
 
+Bytes labels_payload(const LabelContent& content) {
+  Bytes out;
+  append_index(out, content.block);
+  append_le(out, static_cast<std::uint32_t>(content.things.size()));
+  for (const LabelContent::Thing& thing : content.things) {
+    append_le(out, thing.label);
+    append_le(out, thing.instance);
+  }
+  append_le(out, static_cast<std::uint32_t>(content.runs.size()));
+  for (const LabelContent::Run& run : content.runs) {
+    for (const std::uint32_t part : {run.gap, run.length, run.thing}) append_varint(out, part);
+  }
+  return out;
+}
+
+Result<LabelContent> read_labels(const BinaryFrame& frame) {
+  ByteSpan in = frame.payload;
+  LabelContent content;
+  if (in.size() < 16) return early();
+  content.block = take_index<BlockIndex>(in);
+  const std::uint32_t things = *read_le<std::uint32_t>(in);
+  if (things != frame.head.count || in.size() / 8 < things) return early();
+  for (std::uint32_t i = 0; i < things; ++i) {
+    content.things.push_back({*read_le<std::uint32_t>(in), *read_le<std::uint32_t>(in)});
+  }
+  const auto runs = read_le<std::uint32_t>(in);
+  if (!runs || in.size() / 3 < *runs) return early();
+  std::uint64_t at = 0;
+  for (std::uint32_t i = 0; i < *runs; ++i) {
+    const auto gap = read_varint(in), length = read_varint(in), thing = read_varint(in);
+    if (!gap || !length || !thing) return early();
+    const bool fits = *gap <= 64 * 64 * 64 && *length > 0 && *length <= 64 * 64 * 64 && *thing < things;
+    if (!fits || (at += *gap + *length) > 64 * 64 * 64) return refuse(Code::kMalformed, "a run that cannot be");
+    content.runs.push_back(
+        {static_cast<std::uint32_t>(*gap), static_cast<std::uint32_t>(*length), static_cast<std::uint32_t>(*thing)});
+  }
+  if (!in.empty()) return early();
+  return content;
+}
+
 Result<MeshLook> read_mesh(const BinaryFrame& frame) {
   if (frame.head.count > kMaxParts) return refuse(Code::kTooLarge, "a look has at most 1024 meshes");
   ByteSpan in = frame.payload;

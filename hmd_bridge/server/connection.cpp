@@ -78,7 +78,7 @@ Response answer(Server::Core& core, const Request& request, const Peer& peer) {
   }
   if (target == "/api/info")
     return respond_json(request, http::status::ok, {{"protocol", kProtocol}, {"ticket_needed", !peer.local}});
-  const StaticFiles::File* file = core.files.find(target);
+  const auto file = core.files.find(target);
   if (file == nullptr) return error(request, http::status::not_found, "there is nothing by this name");
   return respond(request, http::status::ok, file->type.c_str(),
                  request.method() == http::verb::head ? std::string() : *file->body);

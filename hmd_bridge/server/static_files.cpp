@@ -47,17 +47,27 @@ Result<void> StaticFiles::add(const std::filesystem::path& folder, const std::st
     if (!bytes) return tl::unexpected(std::move(bytes.error()));
     bytes_ += bytes->size();
     if (files_.size() >= kMaxFiles) return refuse(Code::kTooLarge, folder.string() + " holds too many files");
-    files_[prefix + path.generic_string()] = {type_of(path),
-                                              std::make_shared<const std::string>(bytes->begin(), bytes->end())};
+    add(prefix + path.generic_string(),
+        {type_of(path), std::make_shared<const std::string>(bytes->begin(), bytes->end())});
   }
   if (error) return refuse(Code::kIo, folder.string() + ": " + error.message());
   return {};
 }
 
-const StaticFiles::File* StaticFiles::find(std::string_view target) const {
+std::shared_ptr<const StaticFiles::File> StaticFiles::model(std::string_view name) const {
+  const std::filesystem::path file(name);
+  if (!is_plain(std::string(name)) || file.extension() != ".glb") return nullptr;
+  auto bytes = read_whole_file(models_ / file, kMaxModelBytes);
+  if (!bytes) return nullptr;
+  return std::make_shared<const File>(
+      File{type_of(file), std::make_shared<const std::string>(bytes->begin(), bytes->end())});
+}
+
+std::shared_ptr<const StaticFiles::File> StaticFiles::find(std::string_view target) const {
   const std::string_view path = target.substr(0, target.find('?'));
+  if (!models_prefix_.empty() && path.starts_with(models_prefix_)) return model(path.substr(models_prefix_.size()));
   const auto it = files_.find(path == "/" ? "/index.html" : path);
-  return it != files_.end() ? &it->second : nullptr;
+  return it != files_.end() ? it->second : nullptr;
 }
 
 }  // namespace concord::hmd

@@ -91,6 +91,8 @@ class Hub {
   void send(const Ask& ask, FramePointer frame);
   /// Only the newest of a key is kept; who comes later is told it at once.
   void tell_all(const std::string& key, std::string text);
+  /// Who comes later is told it no more; who is here, still.
+  void forget(const std::string& key) { state_.erase(key); }
   void tell(Session& session, const std::string& key, std::string text);
 
   [[nodiscard]] Session* find(std::int64_t session);

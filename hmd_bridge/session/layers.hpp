@@ -14,7 +14,7 @@ inline constexpr std::uint32_t kMapStream = 0, kConflictStream = 1, kGridOccupie
 
 /// One layer that clients look at, and the revisions it is told with.
 struct ShownLayer {
-  ShownLayer(std::uint32_t stream, int levels) : store(stream, levels) {}
+  ShownLayer(std::uint32_t stream, int levels, BlockStore::Say say) : store(stream, levels, std::move(say)) {}
   BlockStore store;
   std::string epoch;
   std::int64_t revision = 0;      ///< of the bridge: when anything in it changed last
@@ -26,8 +26,8 @@ struct ShownLayer {
 /// All layers, and the one counter that their revisions are taken from.
 class Layers {
  public:
-  ShownLayer& open(std::uint32_t stream, int levels) {
-    return layers_.try_emplace(stream, stream, levels).first->second;
+  ShownLayer& open(std::uint32_t stream, int levels, BlockStore::Say say = nullptr) {
+    return layers_.try_emplace(stream, stream, levels, std::move(say)).first->second;
   }
   void close(std::uint32_t stream) { layers_.erase(stream); }
   [[nodiscard]] ShownLayer* find(std::uint32_t stream) {
@@ -41,6 +41,11 @@ class Layers {
     const std::size_t before = layer.changed.size();
     layer.store.set(brick, occupied, revision_ + 1, layer.changed);
     if (layer.changed.size() != before) layer.revision = ++revision_;
+  }
+  /// The same for cells that are occupied as before and say something else.
+  void touch(ShownLayer& layer, BrickIndex brick) {
+    layer.store.touch(brick, ++revision_, layer.changed);
+    layer.revision = revision_;
   }
   [[nodiscard]] std::int64_t revision() const { return revision_; }
 

@@ -98,6 +98,15 @@ void BlockStore::set(BrickIndex brick, const VoxelMask& occupied, std::int64_t r
   raise(1, chunk, revision, changed);
 }
 
+void BlockStore::touch(BrickIndex brick, std::int64_t revision, std::vector<BlockKey>& changed) {
+  const auto [key, number] = place_of(0, {brick.x >> 1, brick.y >> 1, brick.z >> 1});
+  Block& block = blocks_[key];
+  block.changed[static_cast<std::size_t>(number)] = revision;
+  block.revision = revision;
+  block.whole = block.change = nullptr;
+  changed.push_back(key);
+}
+
 /// Carries a change of the chunk `chunk` of the level below upwards, as far as it shows.
 void BlockStore::raise(int level, VoxelIndex chunk, std::int64_t revision, std::vector<BlockKey>& changed) {
   for (; level < levels_; ++level) {
@@ -124,9 +133,24 @@ bool BlockStore::filled(const BlockKey& key) const {
   return it != blocks_.end() && it->second.filled != 0;
 }
 
+FramePointer BlockStore::said(const BlockKey& key, const Block& block) const {
+  const Said what = say_(key.index);
+  const FrameHead head{.kind = what.kind,
+                       .whole = false,
+                       .level = key.level,
+                       .stream = stream_,
+                       .count = what.count,
+                       .revision = block.revision};
+  return std::make_shared<const Bytes>(make_frame(head, what.payload));
+}
+
 FramePointer BlockStore::frame(const BlockKey& key, std::int64_t since) {
   Block& block = blocks_.at(key);
   assert(block.revision > since);
+  if (say_) {
+    if (block.whole == nullptr) block.whole = said(key, block);
+    return block.whole;
+  }
   FramePointer& kept = since == 0 ? block.whole : block.change;
   if (kept != nullptr && (since == 0 || block.change_since == since)) return kept;
 

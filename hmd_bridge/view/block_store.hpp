@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <unordered_map>
@@ -30,12 +31,24 @@ using FramePointer = std::shared_ptr<const Bytes>;
 /// of detail, and when each chunk changed last. Frames are made once for all clients that lack the same.
 class BlockStore {
  public:
-  /// @param levels 1 to kLevels. @param stream the number that its frames bear.
-  BlockStore(std::uint32_t stream, int levels) : stream_(stream), levels_(levels) {}
+  /// What a block says instead of which cells are occupied: payload, and count of its head.
+  struct Said {
+    FrameKind kind;
+    Bytes payload;
+    std::uint32_t count;
+  };
+  using Say = std::function<Said(const BlockIndex&)>;
+
+  /// @param levels 1 to kLevels. @param stream the number that its frames bear. @param say of each block of level 0,
+  /// for a layer of that level alone whose cells are more than occupied; its frames are always whole.
+  BlockStore(std::uint32_t stream, int levels, Say say = nullptr)
+      : stream_(stream), levels_(levels), say_(std::move(say)) {}
 
   /// A brick is now this, as of `revision`. Appends the keys of the blocks that changed to `changed`, which may hold
   /// one twice. @pre `revision` is not below any earlier one, and at least 1.
   void set(BrickIndex brick, const VoxelMask& occupied, std::int64_t revision, std::vector<BlockKey>& changed);
+  /// The same cells of a brick are occupied as before, but they say something else. @pre as for `set`.
+  void touch(BrickIndex brick, std::int64_t revision, std::vector<BlockKey>& changed);
   /// Everything is gone, and forgotten.
   void clear();
 
@@ -80,8 +93,11 @@ class BlockStore {
   bool replace(int level, const VoxelIndex& chunk, const ChunkBits& bits, std::int64_t revision);
   void raise(int level, VoxelIndex chunk, std::int64_t revision, std::vector<BlockKey>& changed);
 
+  [[nodiscard]] FramePointer said(const BlockKey& key, const Block& block) const;
+
   std::uint32_t stream_;
   int levels_;
+  Say say_;
   std::unordered_map<BlockKey, Block, BlockKeyHash> blocks_;
 };
 

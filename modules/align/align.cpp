@@ -18,7 +18,10 @@ constexpr std::size_t kRivalPieces = 6000;
 constexpr int kSettleRounds = 2;
 constexpr double kSettleStep = 0.2;                 // metres: twice what the kernel of the finest level heeds
 constexpr double kMirrorYaw = 12.0 * M_PI / 180.0;  // twice what the direction of the walls is off by, and a margin
-constexpr double kMirrorReach = 6.0;                // metres: a part lies as far on the other side of its room
+/// What is forgiven: a shelf where it stood and where it stands.
+constexpr Movable kShelf{0.75, 2.0};
+constexpr std::size_t kPlacesOfAShelf = 2;
+constexpr double kMirrorReach = 6.0;  // metres: a part lies as far on the other side of its room
 
 bool has_map(const AlignMap& map) { return map.points.size() >= kMinSurfacePoints; }
 
@@ -76,7 +79,8 @@ Support judge(const AlignMap& target, const AlignMap& source, const GicpResult& 
 /// A place that is contradicted only where one thing was moved is believed; `moved` is filled only then.
 void forgive_moved_things(const AlignMap& target, const AlignMap& source, const Support& found, MovedThings& moved,
                           Alignment& out) {
-  MovedThings things = without_moved_things(target, source, out.T_target_source, found, kJudgePieces);
+  MovedThings things =
+      without_moved_things(target, source, out.T_target_source, found, kJudgePieces, kShelf, kPlacesOfAShelf);
   if (!agrees_but_for_moved_things(things.rest)) return;
   moved = std::move(things);
   out.reason = AlignReason::kAccepted;
@@ -85,7 +89,12 @@ void forgive_moved_things(const AlignMap& target, const AlignMap& source, const 
 
 /// What is asked only of a place that passed the gates.
 void check_hold(const AlignMap& target, const AlignMap& source, bool converged, int threads, Alignment& out) {
-  out.loose = loose_directions(target, source, out.T_target_source, threads);
+  for (const Loose& direction : loose_directions(target, source, out.T_target_source, threads)) {
+    out.loose.push_back(direction.words);
+    const int block = direction.turns ? 0 : 3;
+    out.covariance.block<3, 3>(block, block) +=
+        direction.by * direction.by * direction.axis * direction.axis.transpose();  // what noise told does not hold
+  }
   if (!out.loose.empty()) {
     std::string loose;
     for (const std::string& direction : out.loose) loose += (loose.empty() ? "" : ", ") + direction;
@@ -113,8 +122,9 @@ void find_rivals(const AlignMap& target, const AlignMap& source, const std::vect
   }
   if (out.T_target_source_rivals.empty()) return;
   out.reason = AlignReason::kAmbiguous;
-  out.message = std::to_string(out.T_target_source_rivals.size() + 1) +
-                " places explain the maps; give a guess near the right one, or map what sets them apart";
+  out.message =
+      std::to_string(out.T_target_source_rivals.size() + 1) +
+      " places explain the maps; map what sets them apart, or guess nearer to the right one than to the others";
 }
 
 /// The source's mirror image, put where its walls face as the source's do where it lies: mirrored in an upright plane
@@ -146,7 +156,9 @@ void try_mirrored(const AlignMap& target, const AlignMap& source, const Support&
     const Support mirrored_support = support(target, image, T, kJudgePieces, threads);
     if (is_better_mirrored(mirrored_support, accepted)) return true;
     return !moved.p_target.empty() &&
-           is_as_good_mirrored(without_moved_things(target, image, T, mirrored_support, kJudgePieces).rest, moved.rest);
+           is_as_good_mirrored(
+               without_moved_things(target, image, T, mirrored_support, kJudgePieces, kShelf, kPlacesOfAShelf).rest,
+               moved.rest);
   };
   for (const Transform& T : mirrored_on_the_spot(source, out.T_target_source, accepted.weak_direction())) {
     const auto hypotheses = find_hypotheses(target, image, Vicinity{T, kMirrorYaw, kMirrorReach}, threads);

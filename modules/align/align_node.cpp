@@ -107,6 +107,7 @@ void AlignNode::on_request(AlignRequest request) {
   if (const auto taken = desk_.take(std::move(request), content); !taken) {
     return replies_.deny(kRequests, id, taken.error());
   }
+  if (running_ && running_->look) running_->stop.request_stop();  // people do not wait for the watch
   tell(**desk_.find(id, content));
 }
 
@@ -209,6 +210,8 @@ void AlignNode::start(AlignTask task, std::optional<DriftWatch::Look> look) {
 
 void AlignNode::end(const AlignTask& task, std::optional<DriftWatch::Look> look, const Found& found) {
   if (!look) return finish(task, found);
+  // Stopped for a person: it is looked at another time.
+  if (!found.alignment && found.alignment.error().code == Code::kExpired) return;
   watch_.looked_at(std::move(*look), found.took, context_.bus.now());
   finish_watch(task, found);
 }

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "align/drift_watch.hpp"
 #include "align/prepare.hpp"
 #include "align/workers.hpp"
 #include "core/compose.hpp"
@@ -98,7 +99,11 @@ Result<Alignment> found_of(const AlignTask& task, int threads) {
   const Alignment near = recheck(*target, *source, *task.T_target_source, threads);
   if (!may_have_slipped(near)) return near;
   const Alignment far = align(*target, *source, task.T_target_source, threads);
-  return far.accepted() ? far : near;
+  // What is forgiven where a person said that it lies there is what the watch is to say.
+  const bool slipped =
+      far.accepted() &&
+      slip_between(*task.T_target_source, far.T_target_source, task.p_source_middle).is_large(task.site.resolution);
+  return slipped ? far : near;
 }
 
 }  // namespace

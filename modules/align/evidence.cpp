@@ -29,7 +29,7 @@ constexpr double kMinSigma = 0.01;  // metres across a surface: what a lattice c
 
 struct Asked {
   Verdicts upright, level;
-  Eigen::Matrix2d matched = Eigen::Matrix2d::Zero();  // in the frame of who answers
+  Eigen::Matrix2d matched = Eigen::Matrix2d::Zero();  // in the target's axes
   Eigen::Matrix2d against = Eigen::Matrix2d::Zero();
   void add(const Asked& other) {
     upright.add(other.upright);
@@ -63,20 +63,21 @@ Answer answer(const AlignMap& map, const Eigen::Vector3d& p, const Eigen::Vector
   return map.free.contains(p) ? Answer::kContradicted : Answer::kNothing;
 }
 
-/// Calls `heard(piece, p_map, n_map, is_upright, area, answer)` for each piece of the other map that is asked.
+/// `R_target_other`: from the asked one's axes to the target's, in which up is z; the source's z may be anything.
+/// Calls `heard(piece, p_map, n_target, is_upright, area, answer)` for each piece of the other map that is asked.
 template <typename Heard>
-void ask_each(const AlignMap& map, const SurfaceLevel& other, const Transform& T, std::size_t begin, std::size_t end,
-              std::size_t count, const Heard& heard) {
+void ask_each(const AlignMap& map, const SurfaceLevel& other, const Transform& T, const Eigen::Matrix3d& R_target_other,
+              std::size_t begin, std::size_t end, std::size_t count, const Heard& heard) {
   const double area =
       other.size() * other.size() * static_cast<double>(other.cells().size()) / static_cast<double>(count);
   const double size = std::max(map.fine().size(), other.size());
   for (std::size_t i = begin; i < end; ++i) {
     const SurfaceCell& piece = other.cells()[spread(i, count, other.cells().size())];
     if (!piece.is_flat() && !piece.is_solid) continue;
-    const bool is_upright = std::abs(piece.normal.z()) < kUprightNormalZ;
+    const Eigen::Vector3d n_target = R_target_other * piece.normal.cast<double>();
     const Eigen::Vector3d p = T * piece.mean.cast<double>();
     const Eigen::Vector3d n = T.linear() * piece.normal.cast<double>();
-    heard(piece, p, n, is_upright, area, answer(map, p, n, piece, size));
+    heard(piece, p, n_target, std::abs(n_target.z()) < kUprightNormalZ, area, answer(map, p, n, piece, size));
   }
 }
 
@@ -86,11 +87,11 @@ Eigen::Matrix2d facing_against(const SurfaceCell& piece, const Eigen::Vector3d& 
   return area * n.head<2>() * n.head<2>().transpose();
 }
 
-Asked ask(const AlignMap& map, const SurfaceLevel& other, const Transform& T, std::size_t begin, std::size_t end,
-          std::size_t count) {
+Asked ask(const AlignMap& map, const SurfaceLevel& other, const Transform& T, const Eigen::Matrix3d& R_target_other,
+          std::size_t begin, std::size_t end, std::size_t count) {
   Asked out;
   ask_each(
-      map, other, T, begin, end, count,
+      map, other, T, R_target_other, begin, end, count,
       [&](const SurfaceCell& piece, const Eigen::Vector3d&, const Eigen::Vector3d& n, bool is_upright, double area,
           Answer said) {
         Verdicts& verdicts = is_upright ? out.upright : out.level;
@@ -107,30 +108,30 @@ Asked ask(const AlignMap& map, const SurfaceLevel& other, const Transform& T, st
   return out;
 }
 
-Asked ask_all(const AlignMap& map, const AlignMap& other, const Transform& T, std::size_t pieces, int threads) {
+Asked ask_all(const AlignMap& map, const AlignMap& other, const Transform& T, const Eigen::Matrix3d& R_target_other,
+              std::size_t pieces, int threads) {
   const SurfaceLevel& surface = other.fine();
   const std::size_t count = std::min(surface.cells().size(), pieces);
   std::vector<Asked> parts(chunks_of(count, kPiecesPerChunk));
   for_each_chunk(threads, parts.size(), [&](std::size_t chunk) {
     const std::size_t begin = chunk * kPiecesPerChunk;
-    parts[chunk] = ask(map, surface, T, begin, std::min(count, begin + kPiecesPerChunk), count);
+    parts[chunk] = ask(map, surface, T, R_target_other, begin, std::min(count, begin + kPiecesPerChunk), count);
   });
   Asked out;
   for (const Asked& part : parts) out.add(part);
   return out;
 }
 
-/// `T_target_map`: where who answers lies.
 void collect_against(const AlignMap& map, const AlignMap& other, const Transform& T_map_other,
-                     const Transform& T_target_map, bool is_of_source, std::size_t pieces,
+                     const Transform& T_target_other, bool is_of_source, std::size_t pieces,
                      std::vector<PieceAgainst>& out) {
   const SurfaceLevel& surface = other.fine();
   const std::size_t count = std::min(surface.cells().size(), pieces);
-  ask_each(map, surface, T_map_other, 0, count, count,
-           [&](const SurfaceCell& piece, const Eigen::Vector3d& p, const Eigen::Vector3d& n, bool is_upright,
-               double area, Answer said) {
+  ask_each(map, surface, T_map_other, T_target_other.linear(), 0, count, count,
+           [&](const SurfaceCell& piece, const Eigen::Vector3d&, const Eigen::Vector3d& n, bool is_upright, double area,
+               Answer said) {
              if (!is_upright || (said != Answer::kDisplaced && said != Answer::kContradicted)) return;
-             out.push_back({(T_target_map * p).head<2>(), facing_against(piece, T_target_map.linear() * n, area), area,
+             out.push_back({T_target_other * piece.mean.cast<double>(), facing_against(piece, n, area), area,
                             said == Answer::kDisplaced, is_of_source});
            });
 }
@@ -183,22 +184,22 @@ Eigen::Vector2d Support::weak_direction() const {
 
 Support support(const AlignMap& target, const AlignMap& source, const Transform& T_target_source, std::size_t pieces,
                 int threads) {
-  const Asked of_source = ask_all(target, source, T_target_source, pieces, threads);
-  const Asked of_target = ask_all(source, target, T_target_source.inverse(), pieces, threads);
-  const Eigen::Matrix2d R = T_target_source.linear().topLeftCorner<2, 2>();  // what the source answers is in its frame
+  const Asked of_source = ask_all(target, source, T_target_source, T_target_source.linear(), pieces, threads);
+  const Asked of_target =
+      ask_all(source, target, T_target_source.inverse(), Eigen::Matrix3d::Identity(), pieces, threads);
   return {of_source.upright,
           of_source.level,
           of_target.upright,
           of_target.level,
-          of_source.matched + R * of_target.matched * R.transpose(),
-          of_source.against + R * of_target.against * R.transpose()};
+          of_source.matched + of_target.matched,
+          of_source.against + of_target.against};
 }
 
 std::vector<PieceAgainst> pieces_against(const AlignMap& target, const AlignMap& source,
                                          const Transform& T_target_source, std::size_t pieces) {
   std::vector<PieceAgainst> out;
-  collect_against(target, source, T_target_source, Transform::Identity(), true, pieces, out);
-  collect_against(source, target, T_target_source.inverse(), T_target_source, false, pieces, out);
+  collect_against(target, source, T_target_source, T_target_source, true, pieces, out);
+  collect_against(source, target, T_target_source.inverse(), Transform::Identity(), false, pieces, out);
   return out;
 }
 

@@ -49,7 +49,7 @@ struct Support {
 
 /// A piece of a wall or of furniture that speaks against.
 struct PieceAgainst {
-  Eigen::Vector2d p_target;
+  Eigen::Vector3d p_target;
   Eigen::Matrix2d facing;  ///< its part of Support::against_facing
   double area = 0.0;       ///< square metres
   bool is_displaced = false;

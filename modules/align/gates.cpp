@@ -28,6 +28,7 @@ constexpr double kLevelsThatHold =
     0.1;                          // of the walls that lie right: fewer floors and ceilings are not asked about height
 constexpr double kMinRise = 1.0;  // square metres
 constexpr double kMinShareRise = 0.02;
+constexpr double kMinRiseWithoutThing = 0.3;  // square metres
 constexpr double kMaxLevelAgainst = 0.15;
 /// Of all that lies right: where a map has hardly any floor, what is called level is edges of other things.
 constexpr double kFewAgainst = 0.02;
@@ -39,6 +40,8 @@ constexpr double kMoreLevelAgainst = 0.04;
 constexpr double kRoughAgainst = 0.15;
 constexpr double kRoughLevelAgainst = 0.25;
 constexpr double kMirrorAgainst = 0.004;
+constexpr double kMirrorWalls =
+    2000.0;  // square metres, both ways: a hall of 60 x 40 m; beyond it are floors of buildings
 /// By how much a mirror image must be better: what noise makes of two that are as good.
 constexpr double kMirroredShare = 1.02;
 constexpr double kMirroredMore = 1.0;  // square metres
@@ -87,12 +90,12 @@ std::string percent(double share) {
 std::string of_allowed(double share, double allowed) { return percent(share) + ", " + percent(allowed) + " allowed"; }
 
 GateAnswer low_overlap(const std::string& what) {
-  return {AlignReason::kLowOverlap, what + "; map more of what both have seen, or give a guess"};
+  return {AlignReason::kLowOverlap, what + "; map more of what both have seen, or guess where it lies"};
 }
 
 GateAnswer diverged(const std::string& what) {
   return {AlignReason::kDiverged,
-          "the maps contradict each other there: " + what + "; give a better guess, or map what was moved anew"};
+          "the maps contradict each other there: " + what + "; guess better where it lies, or map what was moved anew"};
 }
 
 bool rises(const Verdicts& there, const Verdicts& here) {
@@ -152,7 +155,7 @@ bool is_rival(const Support& place, const Support& accepted) {
 }
 
 bool may_be_mirrored(const Support& accepted) {
-  return accepted.upright().matched <= kBuildingWalls && accepted.upright().share_against() >= kMirrorAgainst;
+  return accepted.upright().matched <= kMirrorWalls && accepted.upright().share_against() >= kMirrorAgainst;
 }
 
 bool is_better_mirrored(const Support& mirrored, const Support& accepted) {
@@ -175,6 +178,11 @@ bool ranks_before(const Support& a, const Support& b) {
 
 bool is_as_good(const Support& moved, const Support& good) {
   return overlap(moved) >= kWithGuess.min_overlap && !rises(moved.upright(), good.upright());
+}
+
+bool is_held_by_a_thing(const Support& moved_rest, const Support& good) {
+  return overlap(moved_rest) >= kWithGuess.min_overlap &&
+         moved_rest.upright().against() < good.upright().against() + kMinRiseWithoutThing;
 }
 
 bool is_as_good_in_height(const Support& moved, const Support& good) {

@@ -47,6 +47,9 @@ struct GateAnswer {
 /// the maps can tell, and by a square metre, else nothing holds the source there. Along the ground and in turns walls
 /// are asked, in height everything.
 [[nodiscard]] bool is_as_good(const Support& moved, const Support& good);
+/// Whether next to nothing is left against a moved place once the thing that speaks most against it is taken out: what
+/// people move is all that holds the source there.
+[[nodiscard]] bool is_held_by_a_thing(const Support& moved_rest, const Support& good);
 [[nodiscard]] bool is_as_good_in_height(const Support& moved, const Support& good);
 
 }  // namespace concord

@@ -16,7 +16,7 @@ constexpr double kGuessYaw = 46.0 * M_PI / 180.0;
 constexpr double kYawSlack = 1.0 * M_PI / 180.0;  // what refinement may add
 constexpr double kGuessReach = 2.6;               // metres
 constexpr double kReachSlack = 0.4;               // metres: by which people's middle of a map and ours differ, turned
-constexpr double kGuessHeight = 3.0;              // metres: less than a storey
+constexpr double kGuessHeight = 2.3;              // metres: less than a storey of a house
 /// A guess that is tilted by more than this means it: the source's frame is not upright. Less is a shaky hand.
 constexpr double kMeantTilt = 15.0 * M_PI / 180.0;
 constexpr double kAnyHeight = 50.0;

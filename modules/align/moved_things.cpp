@@ -2,32 +2,45 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
 namespace concord {
 namespace {
 
-constexpr std::size_t kMostThings = 2;
-constexpr double kRadius = 0.75;  // metres: a cupboard of one and a half metres
-constexpr double kStep = 0.25;    // metres between the middles that are tried
+constexpr double kStep = 0.25;  // metres between the middles that are tried
+
+bool is_in(const PieceAgainst& piece, const Eigen::Vector2d& middle, double radius) {
+  return (piece.p_target.head<2>() - middle).norm() < radius;
+}
 
 /// The middle whose disc holds the most of what is against; the first in order where several do.
-Eigen::Vector2d worst_disc(const std::vector<PieceAgainst>& pieces) {
+Eigen::Vector2d worst_disc(const std::vector<PieceAgainst>& pieces, double radius) {
   std::map<std::pair<int, int>, double> against;  // around each middle
-  const int reach = static_cast<int>(std::ceil(kRadius / kStep));
+  const int reach = static_cast<int>(std::ceil(radius / kStep));
   for (const PieceAgainst& piece : pieces) {
     const int x = static_cast<int>(std::floor(piece.p_target.x() / kStep));
     const int y = static_cast<int>(std::floor(piece.p_target.y() / kStep));
     for (int i = x - reach; i <= x + reach; ++i) {
       for (int j = y - reach; j <= y + reach; ++j) {
-        if ((piece.p_target - kStep * Eigen::Vector2d(i, j)).norm() < kRadius) against[{i, j}] += piece.area;
+        if (is_in(piece, kStep * Eigen::Vector2d(i, j), radius)) against[{i, j}] += piece.area;
       }
     }
   }
   const auto worst = std::max_element(against.begin(), against.end(),
                                       [](const auto& a, const auto& b) { return a.second < b.second; });
   return kStep * Eigen::Vector2d(worst->first.first, worst->first.second);
+}
+
+double height_of(const std::vector<PieceAgainst>& pieces, const Eigen::Vector2d& middle, double radius) {
+  double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
+  for (const PieceAgainst& piece : pieces) {
+    if (!is_in(piece, middle, radius)) continue;
+    low = std::min(low, piece.p_target.z());
+    high = std::max(high, piece.p_target.z());
+  }
+  return high - low;
 }
 
 void take_out(const PieceAgainst& piece, Support& support) {
@@ -39,16 +52,17 @@ void take_out(const PieceAgainst& piece, Support& support) {
 }  // namespace
 
 MovedThings without_moved_things(const AlignMap& target, const AlignMap& source, const Transform& T_target_source,
-                                 const Support& found, std::size_t pieces) {
+                                 const Support& found, std::size_t pieces, const Movable& movable, std::size_t most) {
   MovedThings out{{}, found};
   std::vector<PieceAgainst> against = pieces_against(target, source, T_target_source, pieces);
-  while (!against.empty() && out.p_target.size() < kMostThings) {
-    const Eigen::Vector2d middle = worst_disc(against);
+  while (!against.empty() && out.p_target.size() < most) {
+    const Eigen::Vector2d middle = worst_disc(against, movable.radius);
+    if (height_of(against, middle, movable.radius) > movable.height) break;
     out.p_target.push_back(middle);
     std::erase_if(against, [&](const PieceAgainst& piece) {
-      const bool is_in = (piece.p_target - middle).norm() < kRadius;
-      if (is_in) take_out(piece, out.rest);
-      return is_in;
+      const bool is_of_it = is_in(piece, middle, movable.radius);
+      if (is_of_it) take_out(piece, out.rest);
+      return is_of_it;
     });
   }
   return out;

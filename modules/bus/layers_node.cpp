@@ -57,6 +57,7 @@ std::unique_ptr<BrickReceiver> LayersNode::make_receiver(const std::string& id) 
   events.on_frame = [this, id](const std::string& frame_id) {
     AgentLayer& layer = layers_[id] = {};  // a transform holds for the frame it was found in
     layer.frame_id = frame_id;
+    if (list_) place(id, layer, *list_);  // or it would lie nowhere until the next list
   };
   events.on_brick = [this, id](BrickIndex index, Brick brick) { layers_[id].map.set(index, std::move(brick)); };
   events.on_end = [this, id] { layers_.erase(id); };
@@ -65,14 +66,16 @@ std::unique_ptr<BrickReceiver> LayersNode::make_receiver(const std::string& id) 
                                          std::move(events));
 }
 
+void LayersNode::place(const std::string& id, AgentLayer& layer, const AgentList& list) {
+  const auto state = std::ranges::find(list.agents, id, &AgentState::id);
+  const bool is_placed = state != list.agents.end() && state->aligned && state->frame_id == layer.frame_id;
+  layer.T_map_agent = is_placed ? std::optional(state->T_map_agent) : std::nullopt;
+  if (state != list.agents.end()) layer.weight = state->weight;
+}
+
 void LayersNode::on_agents(const AgentList& list) {
   list_ = list;
-  for (auto& [id, layer] : layers_) {
-    const auto state = std::ranges::find(list.agents, id, &AgentState::id);
-    const bool is_placed = state != list.agents.end() && state->aligned && state->frame_id == layer.frame_id;
-    layer.T_map_agent = is_placed ? std::optional(state->T_map_agent) : std::nullopt;
-    if (state != list.agents.end()) layer.weight = state->weight;
-  }
+  for (auto& [id, layer] : layers_) place(id, layer, list);
 }
 
 const AgentLayers& LayersNode::now() {

@@ -28,6 +28,7 @@ class LayersNode {
  private:
   [[nodiscard]] BrickReceiver* stream_of_channel(const std::string& channel, bool may_begin);
   [[nodiscard]] std::unique_ptr<BrickReceiver> make_receiver(const std::string& id);
+  static void place(const std::string& id, AgentLayer& layer, const AgentList& list);
   void on_agents(const AgentList& list);
 
   NodeContext context_;

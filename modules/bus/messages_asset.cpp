@@ -50,6 +50,11 @@ Result<std::string> injection_of(const std::string& id) {
   return refuse(Code::kBadRequest, std::string("of must be ") + kIdRule);
 }
 
+Result<InstanceId> instance_of(std::int32_t label, std::int32_t instance) {
+  if (label > 0 && instance > 0) return InstanceId{static_cast<ClassId>(label), static_cast<std::uint32_t>(instance)};
+  return refuse(Code::kBadRequest, "say what is meant: of, or the numbers of an instance, which count from 1");
+}
+
 Decoded<Asset> from_wire(const asset_t& in) {
   wire::Filling<Asset> out({}, {});
   out.take(&Asset::name, name_of(in.name));
@@ -59,6 +64,9 @@ Decoded<Asset> from_wire(const asset_t& in) {
   if (!(in.unit > 0) || !std::isfinite(in.unit)) out.require(refuse(Code::kNotFinite, "an asset's unit is none"));
   out.take(&Asset::unit, Result<double>(in.unit));
   out.take(&Asset::gltf_bytes, wire::not_negative(in.gltf_bytes, "gltf_bytes"));
+  const Eigen::Vector3d size(in.size[0], in.size[1], in.size[2]);
+  if (!size.allFinite() || size.minCoeff() < 0) out.require(refuse(Code::kNotFinite, "an asset's size is none"));
+  out.take(&Asset::size, Result<Eigen::Vector3d>(size));
   return out.done();
 }
 
@@ -69,6 +77,8 @@ Bytes encode(const AssetRequest& value) {
   out.op = to_wire(value.op);
   out.asset = value.asset;
   out.of = value.of;
+  out.label = static_cast<std::int32_t>(value.instance.label);
+  out.instance = static_cast<std::int32_t>(value.instance.instance);
   out.T_map_asset = wire::to_wire(value.T_map_asset);
   return wire::to_bytes(out);
 }
@@ -76,7 +86,7 @@ Bytes encode(const AssetRequest& value) {
 template <>
 Decoded<AssetRequest> decode<AssetRequest>(std::span<const std::uint8_t> bytes) {
   static constexpr WireField kLayout[] = {record(wire::kAsker), fixed(1), text(wire::kNameLength),
-                                          text(wire::kIdLength), fixed(wire::kTransformBytes)};
+                                          text(wire::kIdLength), fixed(4 + 4 + wire::kTransformBytes)};
   const auto in = wire::read_asked<asset_request_t>(bytes, kLayout);
   if (!in) return tl::unexpected(in.error());
   auto out = wire::asked_by<AssetRequest>(*in);
@@ -85,7 +95,14 @@ Decoded<AssetRequest> decode<AssetRequest>(std::span<const std::uint8_t> bytes) 
   out.take(&AssetRequest::op, op_of(in->op));
   const bool injects = in->op == asset_request_t::INJECT;
   out.take(&AssetRequest::asset, injects ? name_of(in->asset) : empty(in->asset, "asset is for INJECT"));
-  out.take(&AssetRequest::of, injects ? empty(in->of, "of is for MOVE and DELETE") : injection_of(in->of));
+  const bool by_number = !injects && in->of.empty();
+  if (by_number) out.take(&AssetRequest::instance, instance_of(in->label, in->instance));
+  if (!by_number && (in->label != 0 || in->instance != 0)) {
+    out.require(refuse(Code::kBadRequest, "label and instance are for MOVE and DELETE without of"));
+  }
+  if (!by_number) {
+    out.take(&AssetRequest::of, injects ? empty(in->of, "of is for MOVE and DELETE") : injection_of(in->of));
+  }
   out.take(&AssetRequest::T_map_asset, wire::from_wire(in->T_map_asset));
   return out.done();
 }
@@ -104,6 +121,7 @@ Bytes encode(const ListPart<Asset>& value, std::int64_t utime) {
     one.file = asset.file;
     one.unit = asset.unit;
     one.gltf_bytes = asset.gltf_bytes;
+    for (int i = 0; i < 3; ++i) one.size[i] = asset.size[i];
   }
   return wire::to_bytes(out);
 }
@@ -111,7 +129,7 @@ Bytes encode(const ListPart<Asset>& value, std::int64_t utime) {
 template <>
 Decoded<ListPart<Asset>> decode<ListPart<Asset>>(std::span<const std::uint8_t> bytes) {
   static constexpr WireField kAsset[] = {text(wire::kNameLength), text(wire::kTitleLength), text(kFileLength),
-                                         fixed(8 + 8)};
+                                         fixed(8 + 8 + 8 * 3)};
   static constexpr WireField kLayout[] = {fixed(8 + 8 + 4 + 4), count(kMostInPart), records(kAsset)};
   const auto in = wire::from_bytes<assets_t>(bytes, kLayout);
   if (!in) return bad(in.error());

@@ -23,14 +23,15 @@ constexpr std::int64_t kMaxAnswerParts = kMaxLabelSlots;
 constexpr double kMostRadius = 100.0;
 constexpr std::size_t kBeforeItems = 8 + 8 + 8 + 4 + 4 + 4;
 
-constexpr std::array<std::pair<std::int8_t, Op>, 8> kOps{{{label_request_t::LABEL, Op::kLabel},
+constexpr std::array<std::pair<std::int8_t, Op>, 9> kOps{{{label_request_t::LABEL, Op::kLabel},
                                                           {label_request_t::RESTORE, Op::kRestore},
                                                           {label_request_t::RENAME, Op::kRename},
                                                           {label_request_t::REASSIGN, Op::kReassign},
                                                           {label_request_t::TAKE_OFF, Op::kTakeOff},
                                                           {label_request_t::DELETE, Op::kDelete},
                                                           {label_request_t::UNDO, Op::kUndo},
-                                                          {label_request_t::REDO, Op::kRedo}}};
+                                                          {label_request_t::REDO, Op::kRedo},
+                                                          {label_request_t::TOUCH, Op::kTouch}}};
 constexpr std::array<std::pair<std::int8_t, Kind>, 5> kKinds{{{label_query_t::ALL, Kind::kAll},
                                                               {label_query_t::AT, Kind::kAt},
                                                               {label_query_t::CLASS, Kind::kClass},
@@ -81,6 +82,7 @@ label_instance_t to_wire(const LabelInstance& instance) {
     out.max[i] = high[i];
     out.centroid[i] = instance.centroid[i];
   }
+  out.asset = instance.asset;
   return out;
 }
 
@@ -96,6 +98,9 @@ Decoded<LabelInstance> from_wire(const label_instance_t& in) {
   out.take(&LabelInstance::min, Result<VoxelIndex>(min));
   out.take(&LabelInstance::max, Result<VoxelIndex>(max));
   out.take(&LabelInstance::centroid, Result<Eigen::Vector3d>(centroid));
+  const bool is_asset = in.asset.empty() || is_name(in.asset);
+  out.require(is_asset ? Result<void>() : refuse(Code::kBadName, "an instance is an asset that has no name"));
+  out.take(&LabelInstance::asset, Result<std::string>(in.asset));
   return out.done();
 }
 
@@ -139,7 +144,7 @@ Decoded<LabelRequest> decode<LabelRequest>(std::span<const std::uint8_t> bytes) 
   const bool fits_op = undo ? is_request_id(in->correction_id) : in->correction_id.empty();
   if (!fits_op) out.require(refuse(Code::kBadRequest, "correction_id is for UNDO and REDO alone"));
   out.take(&LabelRequest::correction_id, Result<std::string>(in->correction_id));
-  if (in->op == label_request_t::LABEL || in->op == label_request_t::RESTORE) {
+  if (in->op == label_request_t::LABEL || in->op == label_request_t::RESTORE || in->op == label_request_t::TOUCH) {
     out.take(&LabelRequest::shape, wire::shape_from_wire(in->shape));
   }
   out.take(&LabelRequest::frame, wire::frame_of(*in));
@@ -213,7 +218,8 @@ Bytes encode(const LabelList& value, std::int64_t utime) {
 
 template <>
 Decoded<LabelList> decode<LabelList>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kInstance[] = {fixed(4 + 4), text(wire::kTitleLength), fixed(8 + 24 + 24)};
+  static constexpr WireField kInstance[] = {fixed(4 + 4), text(wire::kTitleLength), fixed(8 + 24 + 24),
+                                            text(wire::kNameLength)};
   static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength), fixed(4 + 4), count(kMostInPart),
                                           records(kInstance)};
   const auto in = wire::from_bytes<label_list_t>(bytes, kLayout);

@@ -70,20 +70,29 @@ Result<Claims> claims_of(const fs::path& file) {
     std::istringstream words(line.data());
     std::string key, what;
     words >> key;
-    if (key == "POINTS") {
-      words >> claims.points;
-    } else if (key == "WIDTH") {
-      words >> width;
-    } else if (key == "HEIGHT") {
-      words >> height;
-    } else if (key == "SIZE") {
-      claims.point_bytes = sum_of(words);
-    } else if (key == "COUNT") {
+    // PCL takes any word that begins so, and the last of several: what is the most that they may claim counts.
+    const auto most = [&](std::size_t& claimed) {
+      std::size_t here = 0;
+      words >> here;
+      claimed = std::max(claimed, here);
+    };
+    if (key.starts_with("POINTS")) {
+      most(claims.points);
+    } else if (key.starts_with("WIDTH")) {
+      most(width);
+    } else if (key.starts_with("HEIGHT")) {
+      most(height);
+    } else if (key.starts_with("SIZE")) {
+      claims.point_bytes = std::max(claims.point_bytes, sum_of(words));
+    } else if (key.starts_with("COUNT")) {
       claims.point_bytes = std::max(claims.point_bytes, std::min<std::size_t>(8 * sum_of(words), kMaxPointBytes + 1));
     } else if (key == "element") {
       words >> what;
-      words >> (what == "vertex" ? claims.points : claims.faces);
-    } else if (key == "DATA" || key == "end_header") {
+      std::size_t count = 0;
+      most(count);
+      std::size_t& all = what == "vertex" ? claims.points : claims.faces;
+      all += std::min(count, kMaxCloudFilePoints + 1);
+    } else if (key.starts_with("DATA") || key == "end_header") {
       words >> what;
       claims.is_packed = what == "binary_compressed";
       if (width > kMaxCloudFilePoints || height > kMaxCloudFilePoints) return too_large(file, "over 20 million points");

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 
+#include "core/label_corrections.hpp"
 #include "core/transform.hpp"
 
 namespace concord {
@@ -16,6 +17,7 @@ struct Asset {
   std::string file;             ///< its file's name in the asset folder
   double unit = 1.0;            ///< metres per unit of the file
   std::int64_t gltf_bytes = 0;  ///< of STATE/assets/gltf/NAME.glb, in metres, axes of the file; 0: none yet
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< along the file's axes, metres; 0: not known yet
   bool operator==(const Asset&) const = default;
 };
 
@@ -32,6 +34,7 @@ struct AssetRequest {
   Op op = Op::kInject;
   std::string asset;                              ///< its name; with kInject
   std::string of;                                 ///< the request that injected it; not with kInject
+  InstanceId instance = {};                       ///< what is meant if `of` is empty; not with kInject
   Transform T_map_asset = Transform::Identity();  ///< of the file's own axes
   std::int64_t utime = 0;
 };

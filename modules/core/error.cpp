@@ -25,6 +25,7 @@ const char* name(Code code) {
     case Code::kNoMap: return "NO_MAP";
     case Code::kNotFound: return "NOT_FOUND";
     case Code::kExists: return "EXISTS";
+    case Code::kLowScore: return "LOW_SCORE";
     case Code::kExpired: return "EXPIRED";
     case Code::kBusy: return "BUSY";
     case Code::kIo: return "IO";

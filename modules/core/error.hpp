@@ -28,8 +28,9 @@ enum class Code {
   kNoMap,
   kNotFound,
   kExists,
-  kExpired,  ///< it held for a while only, or was withdrawn
-  kBusy,     ///< not now; ask again
+  kLowScore,  ///< what was seen is too uncertain
+  kExpired,   ///< it held for a while only, or was withdrawn
+  kBusy,      ///< not now; ask again
   kIo,
 };
 

@@ -92,6 +92,7 @@ struct LabelRequest {
     kDelete,    ///< the voxels of `of` are deleted from the map, by one edit with this request's id
     kUndo,      ///< of the label correction `correction_id`
     kRedo,
+    kTouch,  ///< kLabel, of the object that is touched in the middle of `shape`
   };
   std::string id;
   std::string author;
@@ -127,6 +128,7 @@ struct LabelInstance {
   std::int64_t voxels = 0;
   VoxelIndex min, max;
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  ///< metres, map frame
+  std::string asset = {};                              ///< that it is; empty: none
 };
 
 /// Of values that are not kUnknown.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "bus/messages_label.hpp"
 #include "bus/recent_answers.hpp"
 #include "core/voxel_boxes.hpp"
 #include "semantic/asset_folder.hpp"
@@ -59,6 +60,7 @@ void AssetsNode::list() {
   std::vector<Asset> all;
   for (auto& [name, asset] : assets_) {
     asset.gltf_bytes = gltf_.bytes_of(asset);
+    asset.size = gltf_.size_of(asset);
     all.push_back(asset);
   }
   list_.set(all);
@@ -96,23 +98,37 @@ bool AssetsNode::ask_again(const AssetRequest& request) {
 /// Merge answers to our undo, and we to who asked.
 void AssetsNode::take_out(const AssetRequest& request) {
   const auto before = removed_.find(request.id);
-  const auto there = where_is(request.of, parts_.labels);
-  if (before == removed_.end() && !there) {
-    return replies_.deny(kRequests, request.id,
-                         {Code::kNotFound, "nothing that " + request.of + " injected is in the map"});
-  }
+  const auto there = meant(request);
+  if (before == removed_.end() && !there) return replies_.deny(kRequests, request.id, there.error());
   UndoRequest undo = removal(before != removed_.end() ? before->second : there->edit_id, request.id, request.author);
   undo.utime = request.utime;
   context_.bus.publish("in/undo", encode(undo));
 }
 
+/// What is to be moved or taken out, where it is now.
+Result<Labels::Injected> AssetsNode::meant(const AssetRequest& request) const {
+  for (const auto& [injection, there] : placed(parts_.labels)) {
+    const bool is_meant =
+        request.of.empty() ? parts_.labels.owner_of(there.request_id) == request.instance : injection == request.of;
+    if (is_meant) return there;
+  }
+  // After a restart it is merge that knows what is in the map.
+  if (!is_up_to_date()) {
+    return refuse(Code::kBusy, "semantic has just begun and does not know all edits yet; ask again");
+  }
+  if (!request.of.empty()) return refuse(Code::kNotFound, "nothing that " + request.of + " injected is in the map");
+  return refuse(Code::kNotFound, "no asset in the map is instance " + std::to_string(request.instance.instance) +
+                                     " of class " + std::to_string(request.instance.label));
+}
+
 Result<LabelCorrection::Claim> AssetsNode::claim_of(const AssetRequest& request) const {
   LabelRequest label;
   if (request.op == AssetRequest::Op::kMove) {
-    const auto there = where_is(request.of, parts_.labels);
-    if (!there) return refuse(Code::kNotFound, "nothing that " + request.of + " injected is in the map");
-    label.name = parts_.labels.classes().at(there->of.label).name;
-    label.of.instance = there->of.instance;
+    const auto there = meant(request);
+    if (!there) return tl::unexpected(there.error());
+    const InstanceId of = parts_.labels.owner_of(there->request_id).value_or(there->of);
+    label.name = parts_.labels.classes().at(of.label).name;
+    label.of.instance = of.instance;
     return claim_of(std::move(label), {there->what.asset, request.T_map_asset, there->edit_id}).map([&](auto claim) {
       claim.edit_id = edit_of_asset(request.id);
       return claim;
@@ -222,6 +238,9 @@ void AssetsNode::answer_askers() {
     const auto asker = asked_.find(one.request_id);
     if (asker == asked_.end() || !one.edit || !has_moved(one, parts_.labels)) continue;
     const std::string& class_name = parts_.labels.classes().at(one.of.label).name;
+    LabelInstance instance = parts_.instance(one.of);
+    instance.asset = one.what.asset;
+    context_.bus.publish("out/label_list", encode(LabelList{one.request_id, 0, 1, {instance}}, context_.bus.now()));
     replies_.grant(
         one.request_id, parts_.labels.find(one.request_id)->revision, one.count,
         class_name + " " + std::to_string(one.of.instance) + " is put in" + asker->second + "; edit " + one.edit_id);

@@ -29,6 +29,8 @@ class AssetsNode {
     std::function<Result<void>(const std::string& id, const std::string& author, std::uint64_t content, Labels::What)>
         commit;
     std::function<void(const BrickSet&)> refresh;
+    /// How an instance shows in the map.
+    std::function<LabelInstance(InstanceId)> instance;
   };
 
   AssetsNode(const NodeContext& context, Parts parts);
@@ -44,6 +46,7 @@ class AssetsNode {
  private:
   void put(const AssetRequest& request, std::uint64_t content);
   void take_out(const AssetRequest& request);
+  [[nodiscard]] Result<Labels::Injected> meant(const AssetRequest& request) const;
   [[nodiscard]] Result<LabelCorrection::Claim> claim_of(const AssetRequest& request) const;
   [[nodiscard]] Result<LabelCorrection::Claim> claim_of(LabelRequest label, Injection injection) const;
   void on_answer(const Answer& answer);

@@ -60,7 +60,7 @@ void DetectionsNode::on_detection(const Detection& detection) {
 
 Result<Sightings::Seen> DetectionsNode::see(const Detection& detection) {
   if (detection.score < kLeastScore) {
-    return refuse(Code::kBadRequest, "its score is below 0.5");
+    return refuse(Code::kLowScore, "its score is below 0.5");
   }
   const auto asset = asset_called(detection.asset);
   if (!asset) return tl::unexpected(asset.error());

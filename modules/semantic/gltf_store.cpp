@@ -1,5 +1,7 @@
 #include "semantic/gltf_store.hpp"
 
+#include <Eigen/Geometry>
+
 #include "semantic/gltf.hpp"
 #include "semantic/model_file.hpp"
 #include "store/whole_file.hpp"
@@ -12,9 +14,18 @@ GltfStore::Source GltfStore::source_of(const Asset& asset) const {
   return {fs::last_write_time(folder_ / asset.file, none), asset.unit};
 }
 
+const GltfStore::Tried* GltfStore::tried(const Asset& asset) const {
+  const auto it = tried_.find(asset.name);
+  return it != tried_.end() && it->second.source == source_of(asset) ? &it->second : nullptr;
+}
+
+Eigen::Vector3d GltfStore::size_of(const Asset& asset) const {
+  const Tried* made = tried(asset);
+  return made != nullptr ? made->size : Eigen::Vector3d::Zero();
+}
+
 std::int64_t GltfStore::bytes_of(const Asset& asset) const {
-  const auto tried = tried_.find(asset.name);
-  if (tried == tried_.end() || tried->second != source_of(asset)) return 0;
+  if (tried(asset) == nullptr) return 0;
   std::error_code error;
   const auto size = fs::file_size(file_of(asset), error);
   return error ? 0 : static_cast<std::int64_t>(size);
@@ -22,15 +33,16 @@ std::int64_t GltfStore::bytes_of(const Asset& asset) const {
 
 Result<void> GltfStore::write_next(const std::map<std::string, Asset>& assets) {
   for (const auto& [name, asset] : assets) {
-    const Source source = source_of(asset);
-    const auto tried = tried_.find(name);
-    if (tried != tried_.end() && tried->second == source) continue;
-    tried_[name] = source;
+    if (tried(asset) != nullptr) continue;
+    Tried& made = tried_[name] = {source_of(asset)};
     std::error_code none;
     fs::remove(file_of(asset), none);  // of what the model was
     fs::create_directories(folder_ / "gltf", none);
     const auto mesh = read_model_file(folder_ / asset.file);
     if (!mesh) return tl::unexpected(mesh.error());
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& p : mesh->vertices) box.extend(p);
+    if (!box.isEmpty()) made.size = box.sizes() * asset.unit;
     return write_whole_file(file_of(asset), write_glb(*mesh, asset.unit));
   }
   return {};

@@ -28,6 +28,7 @@ std::string words(InstanceId of) {
 Result<Labels::What> Labels::check(const LabelRequest& request, const std::vector<VoxelIndex>& voxels) const {
   switch (request.op) {
     case LabelRequest::Op::kLabel:
+    case LabelRequest::Op::kTouch:
     case LabelRequest::Op::kRestore: return check_claim(request, voxels);
     case LabelRequest::Op::kRename: return check_rename(request);
     case LabelRequest::Op::kReassign: return check_reassign(request);
@@ -239,6 +240,15 @@ Result<void> Labels::follows(const LabelCorrection& correction) const {
   }
   if (by_id_.contains(correction.id)) return refuse(Code::kExists, "another one has the id " + correction.id);
   return std::visit(Follow{*this}, correction.what);
+}
+
+std::map<InstanceId, std::string> Labels::assets() const {
+  std::map<InstanceId, std::string> out;
+  for (const auto& [edit_id, steps] : by_edit_) {
+    const std::uint32_t step = steps.front();
+    if (const auto of = holder_of(step)) out[*of] = steps_[step].claim.injection.asset;
+  }
+  return out;
 }
 
 }  // namespace concord

@@ -56,8 +56,8 @@ std::vector<VoxelIndex> LabelView::voxels_of(InstanceId of) const {
 LabelInstance LabelView::instance(InstanceId of) const { return summary(of, voxels_of(of)); }
 
 LabelInstance LabelView::summary(InstanceId of, const std::vector<VoxelIndex>& voxels) const {
-  LabelInstance out{of,       labels_.classes().at(of.label).name, static_cast<std::int64_t>(voxels.size()), {}, {},
-                    {0, 0, 0}};
+  LabelInstance out{
+      of, labels_.classes().at(of.label).name, static_cast<std::int64_t>(voxels.size()), {}, {}, {0, 0, 0}, ""};
   if (voxels.empty()) return out;
   out.min = out.max = voxels.front();
   std::array<std::int64_t, 3> sum{};
@@ -132,8 +132,10 @@ Result<std::vector<LabelInstance>> LabelView::answer(const LabelQuery& query) co
     if (!known) return refuse(Code::kNotFound, "no class " + query.name + "; see: concord labels");
     label = *known;
   }
+  const auto assets = labels_.assets();
   for (const auto& [of, voxels] : by_instance(label)) {
     out.push_back(summary(of, query.kind == Kind::kBorder ? border_of(voxels) : voxels));
+    if (const auto it = assets.find(of); it != assets.end()) out.back().asset = it->second;
   }
   return out;
 }

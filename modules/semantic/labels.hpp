@@ -29,7 +29,7 @@ class Labels {
   /// Refused: a name that is none (kBadName) or another class's (kExists); a class, instance or correction that is not
   /// there (kNotFound); no voxel (kEmpty); voxels out of bounds (kOutOfBounds); an undo of what is undone, or what
   /// would leave two classes with one name (kConflict); over a cap (kTooLarge).
-  /// @param voxels what a kLabel or kRestore selects; sorted and unique. @pre not kDelete.
+  /// @param voxels what a kLabel, kTouch or kRestore selects; sorted and unique. @pre not kDelete.
   [[nodiscard]] Result<What> check(const LabelRequest& request, const std::vector<VoxelIndex>& voxels) const;
 
   /// Whether a correction from outside (a map file) is one, and may be the next. Refused: as by `check`; a revision
@@ -96,6 +96,9 @@ class Labels {
 
   /// Whose a claim is, be its edit there or not; nothing if it is undone or taken off, or no claim.
   [[nodiscard]] std::optional<InstanceId> owner_of(const std::string& claim_id) const;
+
+  /// The instances that are models which lie in the map, and their assets.
+  [[nodiscard]] std::map<InstanceId, std::string> assets() const;
 
   [[nodiscard]] std::optional<InstanceId> at(VoxelIndex voxel) const;
 

@@ -8,6 +8,7 @@
 
 #include "bus/recent_answers.hpp"
 #include "semantic/anchor.hpp"
+#include "semantic/segment.hpp"
 
 namespace concord {
 namespace {
@@ -64,7 +65,8 @@ SemanticNode::SemanticNode(const NodeContext& context)
       assets_node_(context, {labels_,
                              [this](const std::string& id, const std::string& author, std::uint64_t content,
                                     Labels::What what) { return commit(id, author, content, std::move(what)); },
-                             [this](const BrickSet& touched) { refresh(touched); }}),
+                             [this](const BrickSet& touched) { refresh(touched); },
+                             [this](InstanceId of) { return view_.instance(of); }}),
       detections_node_(context,
                        {labels_, map_, assets_node_, [this](const WorkFrame& frame) { return T_map_frame(frame); }}),
       files_node_(context, {labels_, [this](const auto& visit) { return store_.for_each(visit); },
@@ -181,8 +183,9 @@ void SemanticNode::grant(const std::string& id, const Labels::Made& made, const 
   std::string what = "done";
   if (made.of.label != 0) {
     const LabelInstance instance =
-        made.of.instance != 0 ? view_.instance(made.of)
-                              : LabelInstance{made.of, labels_.classes().at(made.of.label).name, 0, {}, {}, {0, 0, 0}};
+        made.of.instance != 0
+            ? view_.instance(made.of)
+            : LabelInstance{made.of, labels_.classes().at(made.of.label).name, 0, {}, {}, {0, 0, 0}, ""};
     context_.bus.publish("out/label_list", encode(LabelList{id, 0, 1, {instance}}, context_.bus.now()));
     what = words(instance);
   }
@@ -191,8 +194,9 @@ void SemanticNode::grant(const std::string& id, const Labels::Made& made, const 
 
 Result<Labels::What> SemanticNode::check(const LabelRequest& request) {
   std::vector<VoxelIndex> voxels;
-  if (request.op == LabelRequest::Op::kLabel || request.op == LabelRequest::Op::kRestore) {
-    auto taken = selected(request);
+  const bool is_touch = request.op == LabelRequest::Op::kTouch;
+  if (is_touch || request.op == LabelRequest::Op::kLabel || request.op == LabelRequest::Op::kRestore) {
+    auto taken = is_touch ? touched(request) : selected(request);
     if (!taken) return tl::unexpected(taken.error());
     voxels = std::move(*taken);
   }
@@ -214,6 +218,22 @@ Result<std::vector<VoxelIndex>> SemanticNode::selected(const LabelRequest& reque
   if (!voxels) return voxels;
   std::erase_if(*voxels, [&](VoxelIndex v) { return !is_occupied(map_.at(v)); });
   return voxels;
+}
+
+/// The object in the middle of what a shape takes.
+Result<std::vector<VoxelIndex>> SemanticNode::touched(const LabelRequest& request) const {
+  if (!map_receiver_.synced()) return refuse(Code::kBusy, "the map has not arrived whole; ask again in a second");
+  const auto T = T_map_frame(request.frame);
+  if (!T) return tl::unexpected(T.error());
+  const auto voxels = select(request.shape, *T, context_.site.resolution, kMaxLabelVoxels);
+  if (!voxels) return voxels;
+  if (voxels->empty()) return refuse(Code::kEmpty, "nothing was touched");
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const VoxelIndex v : *voxels) middle += centre_of(v, context_.site.resolution);
+  middle /= static_cast<double>(voxels->size());
+  return propose_object(occupied_of(map_), context_.site.resolution, middle).map([](const Proposal& proposal) {
+    return proposal.voxels.voxels();
+  });
 }
 
 Result<Transform> SemanticNode::T_map_frame(const WorkFrame& frame) const {

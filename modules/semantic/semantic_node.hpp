@@ -37,6 +37,7 @@ class SemanticNode {
   void on_query(const LabelQuery& query);
   [[nodiscard]] bool repeat(const LabelRequest& request, std::uint64_t content);
   [[nodiscard]] Result<std::vector<VoxelIndex>> selected(const LabelRequest& request) const;
+  [[nodiscard]] Result<std::vector<VoxelIndex>> touched(const LabelRequest& request) const;
   [[nodiscard]] Result<Transform> T_map_frame(const WorkFrame& frame) const;
   [[nodiscard]] Result<Labels::What> check(const LabelRequest& request);
   [[nodiscard]] Result<void> commit(const std::string& id, const std::string& author, std::uint64_t content,

@@ -31,7 +31,7 @@ const StaticFiles& files() {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
-  const StaticFiles::File* file = files().find(text);
+  const auto file = files().find(text);
   const std::string path = text.substr(0, text.find('?'));
   fuzz::must((file != nullptr) == (path == "/" || path == "/index.html"));
   (void)origin_allowed(text, "https", text, {text});

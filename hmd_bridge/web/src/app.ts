@@ -3,7 +3,7 @@ import { Group } from "three";
 import type { HelloAnswer, Instance, Pose } from "../generated/messages";
 import { News } from "./base/news";
 import { Signal } from "./base/signal";
-import { kIdentity, type Vec3 } from "./base/vec";
+import { fromYaw, kIdentity, type Vec3 } from "./base/vec";
 import { AlignSession } from "./edit/align_session";
 import { Editor } from "./edit/editor";
 import { SceneDraft } from "./edit/scene_draft";
@@ -116,6 +116,61 @@ export class App {
     this.things.set(answer.instances);
     this.layers.shown.get("labels")?.view.labels.setAssets(answer.instances.filter(({ asset }) => asset !== undefined));
     this.stage.invalidate();
+  }
+
+  /** Takes a labelled thing away: its voxels too, unless they are kept. */
+  async removeThing({ label, instance, class_name }: Instance, keep: boolean): Promise<void> {
+    const asked = this.ask("instance_delete", { label, instance, keep_voxels: keep });
+    await this.changed(asked, ({ voxels }) => `${class_name} ${instance} is gone${keep ? ", its voxels stay" : `: ${voxels} voxels`}.`);
+  }
+
+  async reassign({ label, instance, class_name }: Instance, other: string): Promise<void> {
+    const asked = this.ask("instance_reassign", { label, instance, class_name: other });
+    await this.changed(asked, (now) => `${class_name} ${instance} is ${other} ${now.instance} now.`);
+  }
+
+  async putAsset(asset: string, class_name: string, yaw: number): Promise<void> {
+    const position = await this.editor.askPoint(`Click where the ${class_name} shall stand.`);
+    if (!position) return;
+    const asked = this.ask("asset_add", { asset, frame: "map", T_frame_asset: { position, rotation: fromYaw(yaw) } });
+    await this.changed(asked, ({ instance, voxels }) => `${class_name} ${instance}: ${voxels} voxels.`);
+  }
+
+  async moveAsset({ label, instance, class_name }: Instance): Promise<void> {
+    const position = await this.editor.askPoint(`Click where ${class_name} ${instance} shall stand.`);
+    if (!position) return;
+    const asked = this.ask("asset_move", { label, instance, frame: "map", T_frame_asset: { position, rotation: fromYaw(0) } });
+    await this.changed(asked, () => `${class_name} ${instance} was moved.`);
+  }
+
+  async removeAsset({ label, instance, class_name }: Instance): Promise<void> {
+    if (await this.news.tell(this.ask("asset_delete", { label, instance }), () => `${class_name} ${instance} is gone.`)) await this.loadThings();
+  }
+
+  /** What was seen is there: it is put into the map. */
+  async confirm(detection: string): Promise<void> {
+    await this.changed(this.ask("detection_confirm", { detection }), ({ message }) => message);
+  }
+
+  /** The labelled thing at a point of the map, or beside it within half a voxel. */
+  thingAt(p: Vec3): Instance | null {
+    const labels = this.layers.shown.get("labels")?.view.labels;
+    const r = this.layers.resolution;
+    const steps: Vec3[] = [[0, 0, 0], [0, 0, -1], [0, 0, 1], [-1, 0, 0], [1, 0, 0], [0, -1, 0], [0, 1, 0]];
+    for (const step of steps) {
+      const found = labels?.at(p.map((c, i) => Math.floor(c / r + step[i]! / 2)) as Vec3);
+      const thing = found && this.things.value.find(({ label, instance }) => label === found.label && instance === found.instance);
+      if (thing) return thing;
+    }
+    return null;
+  }
+
+  /** Labels or assets were changed, if it was granted: that can be undone, and the list of things is another. */
+  private async changed<T extends { undo: string }>(asked: Promise<T>, words: (answer: T) => string): Promise<void> {
+    const answer = await this.news.tell(asked, words);
+    if (!answer) return;
+    this.editor.did(answer.undo);
+    await this.loadThings();
   }
 
   async sendMap(): Promise<void> {

@@ -155,13 +155,5 @@ TEST(BridgeWithoutAlign, SaysSo) {
   EXPECT_CODE(ana.ask(AlignRequest{"robot1", {}, {}}), "UNAVAILABLE");
 }
 
-TEST(BridgeWithoutSemantics, SaysSo) {
-  Lab lab;
-  Client ana(lab);
-  EXPECT_CODE(ana.hello(), "OK");
-  EXPECT_CODE(ana.ask(AssetsRequest{}), "UNAVAILABLE");
-  EXPECT_CODE(ana.ask(LabelsRequest{}), "UNAVAILABLE");
-}
-
 }  // namespace
 }  // namespace concord::hmd

@@ -21,6 +21,10 @@ Lab::Lab(With with, double resolution) {
     publish_status_each_second(context("align"));
     align = std::make_unique<AlignNode>(context("align"), std::launch::deferred);
   }
+  if (with != kWithoutSemantic) {
+    publish_status_each_second(context("semantic"));
+    semantic = std::make_unique<SemanticNode>(context("semantic"));
+  }
   ingest = std::make_unique<IngestNode>(context("ingest"));
   if (with != kWithoutMerge) merge = std::make_unique<MergeNode>(context("merge"));
   planner = std::make_unique<PlannerNode>(context("planner"), std::launch::deferred);
@@ -34,6 +38,7 @@ Lab::Lab(With with, double resolution) {
 Lab::~Lab() {
   sent_.clear();
   bridge.reset();
+  semantic.reset();
   align.reset();
   planner.reset();
   merge.reset();

@@ -13,6 +13,7 @@
 #include "ingest/ingest_node.hpp"
 #include "merge/merge_node.hpp"
 #include "planner/planner_node.hpp"
+#include "semantic/semantic_node.hpp"
 
 namespace concord::hmd {
 
@@ -21,7 +22,7 @@ class Lab {
  public:
   static constexpr std::int64_t kStart = 1'700'000'000'000'000;
 
-  enum With { kAll, kWithoutMerge, kWithoutAlign };
+  enum With { kAll, kWithoutMerge, kWithoutAlign, kWithoutSemantic };
   explicit Lab(With with = kAll, double resolution = 0.1);
   ~Lab();
   Lab(const Lab&) = delete;
@@ -45,6 +46,7 @@ class Lab {
   std::unique_ptr<MergeNode> merge;
   std::unique_ptr<PlannerNode> planner;
   std::unique_ptr<AlignNode> align;
+  std::unique_ptr<SemanticNode> semantic;
   std::unique_ptr<Gate> gate;
   std::unique_ptr<BridgeNode> bridge;
 

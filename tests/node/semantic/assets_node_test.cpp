@@ -24,20 +24,20 @@ class AssetsNodeTest : public SemanticStation {
   Answer inject(const std::string& id, const std::string& asset, double x) {
     Transform T = Transform::Identity();
     T.translation().x() = x;
-    return ask("in/asset", encode(AssetRequest{id, "eva", AssetRequest::Op::kInject, asset, "", T, 5}));
+    return ask("in/asset", encode(AssetRequest{id, "eva", AssetRequest::Op::kInject, asset, "", {}, T, 5}));
   }
   /// Semantic's word, not merge's on the halves of it.
   Answer move(const std::string& id, const std::string& of, double x) {
     Transform T = Transform::Identity();
     T.translation().x() = x;
-    ask("in/asset", encode(AssetRequest{id, "eva", AssetRequest::Op::kMove, "", of, T, 5}));
+    ask("in/asset", encode(AssetRequest{id, "eva", AssetRequest::Op::kMove, "", of, {}, T, 5}));
     run();
     const auto own = std::ranges::find(answers_, id, &Answer::id);
     return own != answers_.end() ? *own : Answer{};
   }
   Answer take_out(const std::string& id, const std::string& of) {
     return ask("in/asset",
-               encode(AssetRequest{id, "eva", AssetRequest::Op::kDelete, "", of, Transform::Identity(), 5}));
+               encode(AssetRequest{id, "eva", AssetRequest::Op::kDelete, "", of, {}, Transform::Identity(), 5}));
   }
   Answer undo_edit(const std::string& id, const std::string& edit, bool redo = false) {
     const Answer answer = ask("in/undo", encode(UndoRequest{id, "eva", edit, redo, bus_->now()}));

@@ -98,7 +98,7 @@ TEST_F(DetectionsNodeTest, WhatWasInjectedIsKnownAfterARestartAndGoesWhenItIsTak
 }
 
 TEST_F(DetectionsNodeTest, RefusesWhatIsUnsureUnknownOrNowhere) {
-  EXPECT_EQ(see(2.0, 0.3).code, "BAD_REQUEST");
+  EXPECT_EQ(see(2.0, 0.3).code, "LOW_SCORE");
   EXPECT_EQ(see(2.0, 0.9, "", "sofa").code, "NOT_FOUND");
   EXPECT_TRUE(see(2.0, 0.9, "", "box").ok);  // the one asset of that class
   EXPECT_EQ(see(2.0, std::nan("")).code, "BAD_REQUEST");

@@ -63,7 +63,11 @@ TEST(Align, TakesTheTiltThatAGuessMeans) {
   const Parts parts = parts_of(room(), transform(1.0, 2.0, 0.5, 0.4, 0.0, degrees(90)));
   const Transform guess = parts.T_target_source * transform(0.3, -0.2, 0.2, 0.0, degrees(3), 0.0);
   const Alignment answer = align(parts.target, parts.source, guess, 1);
-  EXPECT_LT(metres_off(answer.T_target_source, parts.T_target_source), 0.05) << answer.message;
+  expect_found(parts, answer);
+  const Parts upright = parts_of(room(), transform(1.0, 2.0, 0.5, 0.4));
+  const Alignment twin = align(upright.target, upright.source, upright.T_target_source, 1);
+  EXPECT_NEAR(answer.overlap_source, twin.overlap_source, 0.05) << "walls are walls in whatever frame";
+  EXPECT_NEAR(answer.against_upright, twin.against_upright, 0.01);
 }
 
 TEST(Align, GivesTheSameBitsOnAnyNumberOfThreads) {
@@ -93,6 +97,7 @@ TEST(Align, RefusesACorridorAndSaysWhereItSlides) {
     ASSERT_EQ(answer.reason, AlignReason::kDegenerate) << answer.message;
     ASSERT_FALSE(answer.loose.empty());
     EXPECT_EQ(answer.loose.front().rfind("slides along x", 0), 0U) << answer.loose.front();
+    EXPECT_GT(std::sqrt(answer.covariance(3, 3)), 0.25) << "it says that it is known along x";
     EXPECT_NE(answer.message.find("slides along x"), std::string::npos);
   }
 }
@@ -137,6 +142,53 @@ TEST(Align, AGuessIsBelievedThoughACupboardWasMoved) {
 TEST(Align, RefusesAMirroredRoomInWhichACupboardWasMoved) {
   const Parts parts = with_a_moved_cupboard(left_part(), mirrored(room()), {0.4, -1.6, 0.0});
   EXPECT_FALSE(align(parts.target, parts.source, parts.T_target_source, 1).accepted());
+}
+
+/// 20 x 12 m, with shelves along one wall and a cupboard: their mirror images are 3 % of the walls.
+Points hall() {
+  Points out;
+  add_box(out, {-10.0, -6.0, 0.0}, {10.0, 6.0, 3.0});
+  add_box(out, {-5.0, 5.3, 0.0}, {5.0, 5.95, 2.0}, false);
+  add_box(out, {-6.0, 2.0, 0.0}, {-4.0, 2.5, 1.8}, false);
+  return out;
+}
+
+TEST(Align, KnowsTheMirrorImageOfAHall) {
+  const AlignMap target = cloud_map(hall());
+  const AlignMap source = cloud_map(mirrored(hall()));
+  const Alignment answer = align(target, source, Transform::Identity(), 2);
+  EXPECT_EQ(answer.reason, AlignReason::kDiverged) << answer.message;
+  EXPECT_NE(answer.message.find("mirror image"), std::string::npos) << answer.message;
+}
+
+TEST(Align, IsNotHeldByACupboardThatMayHaveMoved) {
+  for (const double moved_by : {0.0, 0.6, 1.2}) {
+    Points before = corridor(0.0, 6.0);
+    Points after = before;
+    add_box(before, {1.5, 0.05, 0.0}, {3.1, 0.65, 2.2}, false);
+    add_box(after, {1.5 + moved_by, 0.05, 0.0}, {3.1 + moved_by, 0.65, 2.2}, false);
+    const Alignment answer = align(cloud_map(before), cloud_map(after), Transform::Identity(), 1);
+    EXPECT_EQ(answer.reason, AlignReason::kDegenerate) << moved_by << " m: " << answer.message;
+    ASSERT_EQ(answer.loose.size(), 1U);
+    EXPECT_EQ(answer.loose[0].substr(0, 14), "slides along x");
+  }
+}
+
+TEST(Align, DoesNotForgiveAPartition) {
+  for (const double moved_by : {1.0, 2.0, 3.0}) {
+    Points before = room();
+    Points after = before;
+    add_box(before, {-1.5, -1.8, 0.0}, {-1.3, -0.6, 2.6}, false);
+    add_box(after, {-1.5 + moved_by, -1.8, 0.0}, {-1.3 + moved_by, -0.6, 2.6}, false);
+    EXPECT_FALSE(align(cloud_map(before), cloud_map(after), Transform::Identity(), 1).accepted()) << moved_by << " m";
+  }
+}
+
+TEST(Align, DoesNotTakeAGuessAStoreyUp) {
+  for (const double storey : {2.4, 2.6, 2.9}) {
+    const AlignMap target = cloud_map(moved(room(), transform(0.0, 0.0, storey, 0.0)));
+    EXPECT_FALSE(align(target, cloud_map(room()), Transform::Identity(), 1).accepted()) << storey << " m";
+  }
 }
 
 TEST(Align, RefusesAnotherRoom) {

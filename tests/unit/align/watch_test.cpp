@@ -71,6 +71,23 @@ TEST(CarryOut, OfWhoLiesRightNothingIsSaid) {
   }
 }
 
+TEST(CarryOut, OfACupboardThatWasMovedPeopleAreTold) {
+  AgentLayers layers = slipped(Transform::Identity());
+  const auto with_cupboard = [](Points points, const Eigen::Vector3d& low, const Transform& T) {
+    Points cupboard;
+    add_box(cupboard, low, low + Eigen::Vector3d(0.8, 0.4, 1.6), false);
+    for (const Eigen::Vector3f& p : moved(cupboard, T)) points.push_back(p);
+    return voxels_of(points);
+  };
+  layers.at("robot1").map = with_cupboard(room(), {-0.6, 0.7, 0.0}, Transform::Identity());
+  layers.at("robot2").map = with_cupboard(right_part(), {-0.2, -0.9, 0.0}, kT_left_right.inverse());
+  const auto task = make_recheck("robot2", layers, {kResolution, Policy::kMean});
+  ASSERT_TRUE(task);
+  const auto found = carry_out(*task, 2);
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(contradicts(*found)) << found->message;
+}
+
 TEST(CarryOut, EndsWhenItIsStopped) {
   const auto task = make_recheck("robot2", slipped(Transform::Identity()), {kResolution, Policy::kMean});
   ASSERT_TRUE(task);

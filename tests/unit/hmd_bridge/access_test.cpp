@@ -139,5 +139,28 @@ TEST(StaticFiles, OnlyWhatWasThereAtTheStartIsServed) {
   EXPECT_FALSE(files.add(folder.path / "none", "/"));
 }
 
+TEST(StaticFiles, ModelsAreReadWhenTheyAreAskedForByAPlainNameAlone) {
+  const Folder folder;
+  std::filesystem::create_directories(folder.path / "gltf" / "sub");
+  std::ofstream(folder.path / "secret.glb") << "secret";
+  std::ofstream(folder.path / "gltf" / "secret.txt") << "secret";
+  std::ofstream(folder.path / "gltf" / "sub" / "secret.glb") << "secret";
+  StaticFiles files;
+  EXPECT_EQ(files.find("/models/x/pallet.glb"), nullptr);
+  files.serve_models("/models/x/", folder.path / "gltf");
+  EXPECT_EQ(files.find("/models/x/pallet.glb"), nullptr);
+  std::ofstream(folder.path / "gltf" / "pallet.glb") << "model";
+  ASSERT_NE(files.find("/models/x/pallet.glb"), nullptr);
+  EXPECT_EQ(*files.find("/models/x/pallet.glb?1")->body, "model");
+  EXPECT_EQ(files.find("/models/x/pallet.glb")->type, "model/gltf-binary");
+  std::ofstream(folder.path / "gltf" / "pallet.glb") << "another";
+  EXPECT_EQ(*files.find("/models/x/pallet.glb")->body, "another");
+  for (const char* target :
+       {"/models/x/../secret.glb", "/models/x/sub/secret.glb", "/models/x/secret.txt", "/models/x/", "/models/x/.glb",
+        "/models/pallet.glb", "/models/y/pallet.glb", "/models/x//pallet.glb", "/models/x/%2e%2e/secret.glb"}) {
+    EXPECT_EQ(files.find(target), nullptr) << target;
+  }
+}
+
 }  // namespace
 }  // namespace concord::hmd

@@ -87,6 +87,7 @@ TEST(Golden, FramesAreReadAsWritten) {
     switch (frame->head.kind) {
       case FrameKind::kBlock: EXPECT_EQ(block_payload(read_block(*frame).value()), frame->payload); break;
       case FrameKind::kForget: EXPECT_EQ(forget_payload(read_forget(*frame).value()), frame->payload); break;
+      case FrameKind::kLabels: EXPECT_EQ(labels_payload(read_labels(*frame).value()), frame->payload); break;
       case FrameKind::kMesh: EXPECT_EQ(mesh_payload(read_mesh(*frame).value()), frame->payload); break;
       case FrameKind::kVoxels: EXPECT_EQ(voxels_payload(read_voxels(*frame).value()), frame->payload); break;
       default: break;
@@ -101,6 +102,7 @@ TEST(Golden, BadFramesAreRefused) {
     if (!frame) continue;
     const bool fine = frame->head.kind == FrameKind::kBlock    ? read_block(*frame).has_value()
                       : frame->head.kind == FrameKind::kForget ? read_forget(*frame).has_value()
+                      : frame->head.kind == FrameKind::kLabels ? read_labels(*frame).has_value()
                       : frame->head.kind == FrameKind::kMesh   ? read_mesh(*frame).has_value()
                                                                : read_voxels(*frame).has_value();
     EXPECT_FALSE(fine) << row["name"];

@@ -115,6 +115,55 @@ test("a map is placed by hand, refined, and accepted", async () => {
   await page.close();
 });
 
+test("labelled things and assets are listed, changed, taken away, and what was seen is decided", async () => {
+  server.things = [
+    { label: 3, instance: 1, class_name: "desk", voxels: 640, min: [0, 0, 0], max: [1, 1, 0.8] },
+    { label: 5, instance: 1, class_name: "chair", voxels: 99, min: [1, 0, 0], max: [1.5, 0.5, 0.9], asset: "chair-1" },
+  ];
+  const { page, errors } = await open(browser, url);
+  await settled(page, 100);
+  await page.getByRole("tab", { name: "Things" }).click();
+  await page.getByRole("button", { name: "Refresh" }).click();
+  const desk = page.locator("article", { hasText: "desk 1" });
+  await desk.getByText("label", { exact: true }).waitFor();
+  await page.locator("article", { hasText: "chair 1" }).getByText("asset", { exact: true }).waitFor();
+  await page.getByLabel("Class of desk 1").fill("table");
+  await page.getByRole("button", { name: "Change the class of desk 1" }).click();
+  await page.getByText("desk 1 is table 1 now.").waitFor();
+  assert.deepEqual(server.lastAsked("instance_reassign"), { label: 3, instance: 1, class_name: "table" });
+  await page.getByRole("button", { name: "List labels" }).click();
+  await page.getByLabel("New name of desk").fill("workbench");
+  await page.getByRole("button", { name: "Rename the label desk" }).click();
+  await page.getByText("desk is called workbench now.").waitFor();
+  assert.deepEqual(server.lastAsked("label_rename"), { label: 3, name: "workbench" });
+  await desk.getByRole("button", { name: "Drop label" }).click();
+  await page.getByText("its voxels stay").waitFor();
+  assert.equal(server.lastAsked("instance_delete")!.keep_voxels, true);
+  await page.locator("article", { hasText: "chair 1" }).getByRole("button", { name: "Delete" }).click();
+  await page.getByText("Nothing is labelled yet.").waitFor();
+  assert.deepEqual(server.lastAsked("asset_delete"), { label: 5, instance: 1 });
+
+  server.propose("7");
+  await page.getByText("chair, seen by robot1, 83 % sure").waitFor();
+  await pageShot(page, "desk-9-things");
+  await page.getByRole("button", { name: "It is there" }).click();
+  await page.getByText("64 % of its surface").waitFor();
+  await page.getByText("Nothing waits for your decision.").waitFor();
+  assert.deepEqual(server.lastAsked("detection_confirm"), { detection: "7" });
+  server.propose("8");
+  await page.getByRole("button", { name: "It is not" }).click();
+  await page.getByText("Nothing waits for your decision.").waitFor();
+  assert.deepEqual(server.lastAsked("detection_reject"), { detection: "8" });
+  // What was done here last can be undone like an edit.
+  await page.getByRole("tab", { name: "Edit" }).click();
+  await page.getByRole("button", { name: "Undo", exact: true }).click();
+  await page.getByText("Undone").waitFor();
+  assert.deepEqual(server.lastAsked("undo"), { edit: "asset-3" });
+  server.things = [];
+  assert.deepEqual(errors, []);
+  await page.close();
+});
+
 test("each refusal is said in clear words", async () => {
   const { page } = await open(browser, url);
   await settled(page, 100);

@@ -125,6 +125,18 @@ test("a person enters a captured room, scans it, aligns it by hand, corrects it,
   await settled(page);
   await looking(page, there(scene.added[0]), () => canvasShot(page, "stack-6-corrected"));
 
+  // One touch and a name: the whole of it is labelled.
+  await pressButton(page, "do touch");
+  await aimAt(page, there([(scene.added[0][0] + scene.added[1][0]) / 2, scene.added[0][1], 0.5]));
+  await press(page, "select", true);
+  await press(page, "select", false);
+  await page.waitForFunction(() => (window as unknown as HeadsetPage).concordImmersive.panel.pageShown.title.includes("What is it"));
+  for (const key of ["p", "a", "n", "e"]) await pressButton(page, `key ${key}`);
+  await pressButton(page, "text done");
+  await words(page, "pane 1");
+  await settled(page);
+  await looking(page, there(scene.added[0]), () => canvasShot(page, "stack-6b-labelled"));
+
   // A robot's way, blocked, and the other one.
   await pressButton(page, "page main");
   await pressButton(page, "page robots");
@@ -154,6 +166,8 @@ test("a person enters a captured room, scans it, aligns it by hand, corrects it,
   // The same map on a desk, by somebody else.
   const desk = await open(browser, stack!.url);
   await settled(desk.page, 100);
+  await desk.page.getByRole("tab", { name: "Things" }).click();
+  await desk.page.locator("article", { hasText: "pane 1" }).waitFor();
   await desk.page.getByRole("tab", { name: "History" }).click();
   await desk.page.getByRole("button", { name: "Refresh" }).click();
   await desk.page.getByText(/added/).first().waitFor();

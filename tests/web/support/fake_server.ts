@@ -7,7 +7,7 @@ import { createServer, type Server } from "node:http";
 import type { AddressInfo } from "node:net";
 import { extname, join, normalize } from "node:path";
 import { WebSocketServer, type WebSocket } from "ws";
-import type { Agent, Answers, Code, Events, Operation, Path, Pose, Refusal, Requests, RobotPose, Shape } from "../../../hmd_bridge/web/generated/messages";
+import type { Agent, Answers, Code, Events, Instance, Operation, Path, Pose, Refusal, Requests, RobotPose, Shape } from "../../../hmd_bridge/web/generated/messages";
 import { checkNotice, checkRequest } from "../../../hmd_bridge/web/generated/messages";
 import { readHeaderOf } from "./upload";
 import { office, pointsFrame, type VoxelMap } from "./voxel_map";
@@ -144,6 +144,7 @@ export class FakeServer {
   }
 
   private turn(edit: string, active: boolean): { revision: number; voxels: number } {
+    if (edit.startsWith("label/") || edit.startsWith("asset-")) return { revision: this.revision, voxels: 640 };
     const { voxels, occupied } = this.undone.get(edit)!;
     for (const voxel of voxels) this.map.set(voxel, active ? occupied : !occupied);
     this.operations.find(({ operation }) => operation === edit)!.active = active;
@@ -169,6 +170,18 @@ export class FakeServer {
     return { robot, status: "OK", message: "", frame: "map", points, length: blocked ? 7.2 : 6.3, clearance: blocked ? 0.2 : 0.7, plan: "p", plan_number: blocked ? 2 : 1, map_revision: this.revision, active: true };
   }
 
+  /** What is labelled. */
+  things: Instance[] = [];
+
+  /** Something was seen, and waits for somebody's word. */
+  propose(detection: string): void {
+    this.tellAll("detection", { detection, class_name: "chair", T_map_object: at(1, 0), score: 0.83, by: "robot1", open: true });
+  }
+
+  private decide(detection: string): void {
+    this.tellAll("detection", { detection, class_name: "chair", T_map_object: at(1, 0), score: 0.83, by: "robot1", open: false });
+  }
+
   private readonly does: Done = {
     hello: ({ resume }) => ({
       session: "s", person: 1, role: this.role, name: "Ana", resumed: resume !== undefined, resolution: kResolution, epoch: "e", utime: 1_790_000_000_000_000,
@@ -182,15 +195,37 @@ export class FakeServer {
     undo: ({ edit }) => this.turn(edit, false),
     redo: ({ edit }) => this.turn(edit, true),
     history: () => ({ operations: this.operations }),
-    instances: () => ({ instances: [], in_all: 0 }),
-    label: () => ({ label: 3, instance: 1, voxels: 640 }),
+    instances: () => ({ instances: this.things, in_all: this.things.length }),
+    label: () => ({ label: 3, instance: 1, voxels: 640, undo: "label/1" }),
+    label_touch: () => ({ label: 4, instance: 1, voxels: 120, min: [0, 0, 0], max: [0.5, 0.5, 0.9], undo: "label/2" }),
+    labels: () => ({ labels: this.things.length > 0 ? [{ label: 3, name: "desk", instances: this.things.length, voxels: 640 }] : [] }),
+    label_rename: () => ({ undo: "label/3" }),
+    instance_reassign: ({ label }) => ({ label: label + 1, instance: 1, voxels: 640, undo: "label/4" }),
+    instance_delete: ({ label, instance }) => {
+      this.things = this.things.filter((thing) => thing.label !== label || thing.instance !== instance);
+      return { voxels: 640, undo: "label/5" };
+    },
+    asset_add: () => ({ label: 5, instance: 1, voxels: 99, revision: 9, undo: "asset-1" }),
+    asset_move: () => ({ voxels: 99, revision: 10, undo: "asset-2" }),
+    asset_delete: ({ label, instance }) => {
+      this.things = this.things.filter((thing) => thing.label !== label || thing.instance !== instance);
+      return { revision: 11 };
+    },
+    detection_confirm: ({ detection }) => {
+      this.decide(detection);
+      return { label: 5, instance: 2, voxels: 99, revision: 12, undo: "asset-3", message: "chair 2 is put in, 64 % of its surface within a voxel of the map's" };
+    },
+    detection_reject: ({ detection }) => {
+      this.decide(detection);
+      return {};
+    },
     lease_hold: () => ({}),
     lease_free: () => ({}),
     place: () => ({ revision: 2 }),
     send_map: () => ({ occupied: 4711, free: 9000, revision: 2 }),
     maps: () => ({ maps: [{ file: "ground-floor.concord", bytes: 1_830_000 }] }),
     conflicts: () => ({ regions: [{ low: [0, -20, 0], high: [2, 44, 40], voxels: 640, claims: [{ agent: "robot1", occupied: 0, free: 640 }, { agent: "robot2", occupied: 640, free: 0 }] }], regions_in_all: 1, voxels_in_all: 640 }),
-    assets: () => ({ assets: [{ asset: "chair-1", class_name: "chair", size: [0.5, 0.5, 0.9], gltf: "/assets/chair-1.glb" }] }),
+    assets: () => ({ assets: [{ asset: "chair-1", class_name: "chair", size: [0.5, 0.5, 0.9], gltf: "/models/s/chair-1.glb" }] }),
     path: ({ robot }) => ({ path: this.path(robot) }),
     goal: ({ robot }) => ({ path: this.path(robot) }),
     plan: ({ robot }) => ({ path: this.path(robot) }),

@@ -93,9 +93,14 @@ export class Editor {
     const words = { add: "added", delete: "cleared", move: "moved" }[op];
     const answer = await this.news.tell(this.ask("edit", body), ({ voxels }) => `${counted(voxels, "voxel")} ${words}.`);
     if (!answer) return;
-    this.undoable.set([...this.undoable.value, answer.edit]);
-    this.redoable.set([]);
+    this.did(answer.edit);
     this.cancel();
+  }
+
+  /** Something was done that can be undone by this id. */
+  did(undo: string): void {
+    this.undoable.set([...this.undoable.value, undo]);
+    this.redoable.set([]);
   }
 
   async undo(): Promise<void> {
@@ -118,7 +123,21 @@ export class Editor {
     const shape = this.shape();
     if (!shape) return;
     const asked = this.ask("label", { frame: "map", shape, class_name: className });
-    if (await this.news.tell(asked, ({ voxels, instance }) => `${counted(voxels, "voxel")} labelled as ${className} ${instance}.`)) this.cancel();
+    const answer = await this.news.tell(asked, ({ voxels, instance }) => `${counted(voxels, "voxel")} labelled as ${className} ${instance}.`);
+    if (!answer) return;
+    this.did(answer.undo);
+    this.cancel();
+  }
+
+  /** One touch: the thing at a point that the person shows. @param name asked for once they have shown it */
+  async touch(name: () => Promise<string | null>): Promise<void> {
+    if (!this.permitted()) return;
+    const p = await this.askPoint("Click the thing that you want to name.");
+    const class_name = p && (await name());
+    if (!p || !class_name) return;
+    const asked = this.ask("label_touch", { frame: "map", p, class_name });
+    const answer = await this.news.tell(asked, ({ voxels, instance }) => `${class_name} ${instance}: ${counted(voxels, "voxel")}. Undo it if that is not the thing.`);
+    if (answer) this.did(answer.undo);
   }
 
   async zone(name: string, kind: ZoneKind): Promise<void> {

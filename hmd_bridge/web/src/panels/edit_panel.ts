@@ -56,7 +56,8 @@ function useSection(app: App): HTMLElement {
   const zone = el("input", { type: "text", placeholder: "name of the zone", maxlength: 40, "aria-label": "Name of the zone" });
   const kind = select([{ value: "no_go", title: "Keep out" }, { value: "allow_contact", title: "Contact allowed" }, { value: "costly", title: "Better not" }, { value: "corridor", title: "Corridor: ways keep to it" }], { "aria-label": "Kind of zone" });
   return section("Use the selection",
-    el("div", { class: "row" }, label, button("Label", () => void editor.label(label.value.trim()))),
+    el("div", { class: "row" }, label, button("Label", () => void editor.label(label.value.trim())),
+      button("Label what I click…", () => void editor.touch(() => Promise.resolve(label.value.trim())), { title: "One touch: the whole thing that is there, without a selection" })),
     el("div", { class: "row" }, zone, kind, button("Add zone", () => void editor.zone(zone.value.trim(), kind.value as ZoneKind))),
     button("Add as virtual obstacle", () => void app.addObstacle(), { title: "Robots take another way" }));
 }

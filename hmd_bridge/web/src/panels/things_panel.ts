@@ -4,7 +4,6 @@ import type { Asset, Instance, Label } from "../../generated/messages";
 import { button, el, live, none, section } from "../base/dom";
 import { counted } from "../base/news";
 import { Signal } from "../base/signal";
-import { fromYaw, type Vec3 } from "../base/vec";
 
 export function thingsPanel(app: App): HTMLElement {
   return el("div", {}, detectionsSection(app), instancesSection(app), classesSection(app), assetsSection(app));
@@ -17,7 +16,7 @@ function detectionsSection(app: App): HTMLElement {
     return detections.value.map(({ detection, class_name, score, by }) =>
       el("article", {}, el("p", {}, `${class_name}, seen by ${by}, ${Math.round(score * 100)} % sure`),
         el("div", { class: "row" },
-          button("It is there", () => void app.news.tell(app.ask("detection_confirm", { detection }), () => `${class_name} was put into the map.`), { class: "main", disabled: !app.mayEdit }),
+          button("It is there", () => void app.confirm(detection), { class: "main", disabled: !app.mayEdit }),
           button("It is not", () => void app.news.tell(app.ask("detection_reject", { detection }), () => "Rejected."), { disabled: !app.mayEdit }))));
   });
   return section("Detected", list);
@@ -32,18 +31,20 @@ function instancesSection(app: App): HTMLElement {
 }
 
 function thingCard(app: App, thing: Instance): HTMLElement {
-  const { label, instance, class_name, voxels, min, max, asset } = thing;
+  const { instance, class_name, voxels, min, max, asset } = thing;
   const remove = (keep: boolean): void => {
-    const asked: Promise<unknown> = asset === undefined ? app.ask("instance_delete", { label, instance, keep_voxels: keep }) : app.ask("asset_delete", { label, instance });
-    void app.news.tell(asked, () => `${class_name} ${instance} is gone.`).then(() => app.loadThings());
+    void (asset === undefined ? app.removeThing(thing, keep) : app.removeAsset(thing));
   };
+  const other = el("input", { type: "text", maxlength: 40, class: "short", placeholder: "another class", "aria-label": `Class of ${class_name} ${instance}` });
+  const reassign = button("Change", () => void app.reassign(thing, other.value.trim()), { disabled: !app.mayEdit, "aria-label": `Change the class of ${class_name} ${instance}` });
   const acts = asset === undefined
     ? [button("Drop label", () => remove(true), { disabled: !app.mayEdit }), button("Delete", () => remove(false), { class: "danger", disabled: !app.mayEdit })]
-    : [button("Move…", () => void moveAsset(app, thing), { disabled: !app.mayEdit }), button("Delete", () => remove(false), { class: "danger", disabled: !app.mayEdit })];
+    : [button("Move…", () => void app.moveAsset(thing), { disabled: !app.mayEdit }), button("Delete", () => remove(false), { class: "danger", disabled: !app.mayEdit })];
   return el("article", {},
     el("header", {}, el("strong", {}, `${class_name} ${instance}`), el("span", { class: asset === undefined ? "badge label" : "badge asset" }, asset === undefined ? "label" : "asset")),
     el("p", { class: "quiet" }, counted(voxels, "voxel")),
-    el("div", { class: "row" }, button("Look", () => app.eyes.lookAt(min, max)), ...acts));
+    el("div", { class: "row" }, button("Look", () => app.eyes.lookAt(min, max)), ...acts),
+    el("div", { class: "row" }, other, reassign));
 }
 
 /** Classes of things, each of which can be taken away as a whole. */
@@ -55,23 +56,28 @@ function classesSection(app: App): HTMLElement {
   };
   const remove = async ({ label, name }: Label): Promise<void> => {
     const asked = app.ask("label_delete", { label, keep_voxels: true });
-    if (await app.news.tell(asked, ({ voxels }) => `${name} is no label any more; ${counted(voxels, "voxel")} stay as they are.`)) await refresh();
+    const answer = await app.news.tell(asked, ({ voxels }) => `${name} is no label any more; ${counted(voxels, "voxel")} stay as they are.`);
+    if (!answer) return;
+    app.editor.did(answer.undo);
+    await refresh();
+  };
+  const rename = async (label: Label, name: string): Promise<void> => {
+    const answer = await app.news.tell(app.ask("label_rename", { label: label.label, name }), () => `${label.name} is called ${name} now.`);
+    if (!answer) return;
+    app.editor.did(answer.undo);
+    await Promise.all([refresh(), app.loadThings()]);
   };
   const list = live((redraw) => labels.watch(redraw), () => {
     if (!labels.value) return [];
     if (labels.value.length === 0) return [none("There are no labels.")];
-    return labels.value.map((label) =>
-      el("div", { class: "row between" }, `${label.name}: ${counted(label.instances, "thing")}`,
-        button("Drop", () => void remove(label), { class: "danger", disabled: !app.mayEdit, "aria-label": `Drop the label ${label.name}` })));
+    return labels.value.map((label) => {
+      const name = el("input", { type: "text", maxlength: 40, class: "short", "aria-label": `New name of ${label.name}` });
+      return el("div", { class: "row between" }, `${label.name}: ${counted(label.instances, "thing")}`, name,
+        button("Rename", () => void rename(label, name.value.trim()), { disabled: !app.mayEdit, "aria-label": `Rename the label ${label.name}` }),
+        button("Drop", () => void remove(label), { class: "danger", disabled: !app.mayEdit, "aria-label": `Drop the label ${label.name}` }));
+    });
   });
   return section("Labels", button("List labels", () => void refresh()), list);
-}
-
-async function moveAsset(app: App, { label, instance, class_name }: Instance): Promise<void> {
-  const position = await app.editor.askPoint(`Click where ${class_name} ${instance} shall stand.`);
-  if (!position) return;
-  const asked = app.ask("asset_move", { label, instance, frame: "map", T_frame_asset: { position, rotation: fromYaw(0) } });
-  if (await app.news.tell(asked, () => `${class_name} ${instance} was moved.`)) await app.loadThings();
 }
 
 function assetsSection(app: App): HTMLElement {
@@ -91,11 +97,7 @@ function assetsSection(app: App): HTMLElement {
 function assetCard(app: App, { asset, class_name, size }: Asset): HTMLElement {
   const turn = el("input", { type: "number", value: 0, step: 15, class: "short", "aria-label": `Heading of ${asset}, degrees` });
   const put = async (): Promise<void> => {
-    const position: Vec3 | null = await app.editor.askPoint(`Click where the ${class_name} shall stand.`);
-    if (!position) return;
-    const T_frame_asset = { position, rotation: fromYaw((Number(turn.value) * Math.PI) / 180) };
-    const asked = app.ask("asset_add", { asset, frame: "map", T_frame_asset });
-    if (await app.news.tell(asked, ({ instance, voxels }) => `${class_name} ${instance}: ${counted(voxels, "voxel")}.`)) await app.loadThings();
+    await app.putAsset(asset, class_name, (Number(turn.value) * Math.PI) / 180);
   };
   return el("article", {}, el("header", {}, el("strong", {}, asset), el("span", { class: "quiet" }, `${size.map((edge) => edge.toFixed(2)).join(" × ")} m`)),
     el("div", { class: "row" }, turn, "degrees", button("Put into the map…", () => void put(), { class: "main", disabled: !app.mayEdit })));

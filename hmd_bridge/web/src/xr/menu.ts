@@ -3,9 +3,8 @@ import type { App } from "../app";
 import { Signal } from "../base/signal";
 import { correct, refer, send, whatIf } from "../edit/robot_acts";
 import { kTools, type Tool } from "../edit/selection";
-import type { Asset } from "../../generated/messages";
+import type { Asset, Instance } from "../../generated/messages";
 import { evidenceWords } from "../panels/align_panel";
-import { fromYaw } from "../base/vec";
 import { vec } from "../scene/three_pose";
 import { keyboardPage, typed } from "./keyboard";
 import type { OwnFrame } from "./own_frame";
@@ -26,6 +25,7 @@ export class Menu {
   private name: PageName = "main";
   private typing: { hint: string; text: string; done: (text: string | null) => void } | null = null;
   private assets: Asset[] = [];
+  private picked: Instance | null = null;
 
   constructor(
     private readonly app: App,
@@ -50,9 +50,9 @@ export class Menu {
     else if (verb === "tool") this.app.editor.begin(what as Tool);
     else if (verb === "robot") this.robot(what);
     else if (verb === "with") void this.app.align.begin(this.own.agent, what);
-    else if (verb === "yes") void this.app.news.tell(this.app.ask("detection_confirm", { detection: what }), () => "It was put into the map.");
+    else if (verb === "yes") void this.app.confirm(what);
     else if (verb === "no") void this.app.news.tell(this.app.ask("detection_reject", { detection: what }), () => "Rejected.");
-    else if (verb === "asset") void this.putAsset(what);
+    else if (verb === "asset") void this.app.putAsset(what, what, 0);
     else this.acts[what]?.();
   }
 
@@ -72,6 +72,12 @@ export class Menu {
     obstacle: () => void this.app.addObstacle(),
     removeObstacle: () => void this.app.removeObstacle(this.app.obstacles.value.at(-1)!),
     label: () => void this.withText("What is it?", (text) => this.app.editor.label(text)),
+    touch: () => void this.app.editor.touch(() => this.text("What is it?")),
+    pick: () => void this.pick(),
+    dropLabel: () => void this.with((thing) => this.app.removeThing(thing, true)),
+    deleteThing: () => void this.with((thing) => (thing.asset === undefined ? this.app.removeThing(thing, false) : this.app.removeAsset(thing))),
+    moveThing: () => void this.with((thing) => this.app.moveAsset(thing)),
+    reassign: () => void this.with((thing) => this.withText(`What is ${thing.class_name} ${thing.instance}?`, (text) => this.app.reassign(thing, text))),
     zone: () => void this.withText("Name of the keep-out zone", (text) => this.app.editor.zone(text, "no_go")),
     atHand: () => this.atHand.set(!this.atHand.value),
     refine: () => void this.app.align.refine(),
@@ -127,7 +133,7 @@ export class Menu {
         kTools.map(({ tool, title }) => ({ id: `tool ${tool}`, title, pressed: tool === selected })),
         [{ id: "do done", title: "Done" }, { id: "do back", title: "Back" }, { id: "do cancel", title: "Cancel" }],
         [{ id: "do add", title: "Add", main: true, disabled: off }, { id: "do delete", title: "Delete", main: true, disabled: off }, { id: "do undo", title: "Undo", disabled: editor.undoable.value.length === 0 }, { id: "do redo", title: "Redo", disabled: editor.redoable.value.length === 0 }],
-        [{ id: "do label", title: "Label…", disabled: off }, { id: "do zone", title: "Keep out…", disabled: off }, { id: "do obstacle", title: "Obstacle", disabled: off }],
+        [{ id: "do label", title: "Label…", disabled: off }, { id: "do touch", title: "Name a thing…", share: 1.4, disabled: off }, { id: "do zone", title: "Keep out…", disabled: off }, { id: "do obstacle", title: "Obstacle", disabled: off }],
         [kBack, { id: "do atHand", title: this.atHand.value ? "Points at my hand" : "Points where I aim", share: 2 }],
       ],
     };
@@ -174,7 +180,26 @@ export class Menu {
       { id: `no ${detection}`, title: "It is not", disabled: !this.app.mayEdit },
     ]);
     const assets = this.assets.slice(0, kMostRows).map(({ asset, class_name }) => [{ id: `asset ${asset}`, title: `Put a ${class_name}: ${asset}`, disabled: this.app.editor.blocked.value !== null }]);
-    return { title: "Things", rows: [...detected, ...assets, [kBack]] };
+    const off = this.app.editor.blocked.value !== null || !this.app.mayEdit;
+    const thing = this.picked;
+    const act = thing?.asset === undefined ? { id: "do dropLabel", title: "Drop label", disabled: off } : { id: "do moveThing", title: "Move…", disabled: off };
+    const picked = thing ? [[{ id: "do deleteThing", title: "Delete", disabled: off }, act, { id: "do reassign", title: "It is a…", disabled: off }]] : [];
+    return { title: thing ? `${thing.class_name} ${thing.instance}` : "Things", rows: [...detected, ...assets, ...picked, [kBack, { id: "do pick", title: "Pick a thing…", share: 2 }]] };
+  }
+
+  private async pick(): Promise<void> {
+    const p = await this.app.editor.askPoint("Click a labelled thing.");
+    this.picked = p && this.app.thingAt(p);
+    if (p && !this.picked) this.app.news.failed("Nothing is labelled there.");
+    this.page.set(this.make());
+  }
+
+  /** Does something with the thing that was picked, which is then picked no more. */
+  private async with(act: (thing: Instance) => Promise<void>): Promise<void> {
+    const thing = this.picked;
+    this.picked = null;
+    this.page.set(this.make());
+    if (thing) await act(thing);
   }
 
   private turnTo(name: PageName): void {
@@ -199,18 +224,16 @@ export class Menu {
     if (verb === "see") void refer(this.app, robot, (p) => vec(this.app.stage.own.worldToLocal(this.app.stage.fromMap(p))));
   }
 
-  private async putAsset(asset: string): Promise<void> {
-    const position = await this.app.editor.askPoint("Click where it shall stand.");
-    if (!position) return;
-    const asked = this.app.ask("asset_add", { asset, frame: "map", T_frame_asset: { position, rotation: fromYaw(0) } });
-    if (await this.app.news.tell(asked, ({ voxels }) => `Put there: ${voxels} voxels.`)) await this.app.loadThings();
-  }
-
-  private async withText(hint: string, act: (text: string) => Promise<void>): Promise<void> {
-    const text = await new Promise<string | null>((done) => {
+  /** What the person types; null if they would rather not. */
+  private text(hint: string): Promise<string | null> {
+    return new Promise((done) => {
       this.typing = { hint, text: "", done };
       this.page.set(this.make());
     });
+  }
+
+  private async withText(hint: string, act: (text: string) => Promise<void>): Promise<void> {
+    const text = await this.text(hint);
     if (text !== null) await act(text);
   }
 
