@@ -108,7 +108,7 @@ void check_hold(const AlignMap& target, const AlignMap& source, bool converged, 
 
 /// Other places that explain the two as well. What refines to the answer is none: it was on its way there.
 void find_rivals(const AlignMap& target, const AlignMap& source, const std::vector<Hypothesis>& hypotheses,
-                 const Support& accepted, int threads, Alignment& out) {
+                 const Support& accepted, Origin origin, int threads, Alignment& out) {
   const Eigen::Vector3d p_source = middle_of(source);
   for (const Hypothesis& h : hypotheses) {
     if (!are_apart(h.T_target_source, out.T_target_source, p_source) || !may_rival(h.support)) continue;
@@ -116,7 +116,7 @@ void find_rivals(const AlignMap& target, const AlignMap& source, const std::vect
     out.iterations += rival.iterations;
     const auto is_same = [&](const Transform& T) { return !are_apart(rival.T_target_source, T, p_source); };
     if (is_same(out.T_target_source)) continue;
-    if (!is_rival(support(target, source, rival.T_target_source, kRivalPieces, threads), accepted)) continue;
+    if (!is_rival(support(target, source, rival.T_target_source, kRivalPieces, threads), accepted, origin)) continue;
     auto& rivals = out.T_target_source_rivals;
     if (std::none_of(rivals.begin(), rivals.end(), is_same)) rivals.push_back(rival.T_target_source);
   }
@@ -174,9 +174,12 @@ void try_mirrored(const AlignMap& target, const AlignMap& source, const Support&
   }
 }
 
-Alignment no_map() {
+Alignment no_map(const AlignMap& target, const AlignMap& source) {
   Alignment out;
-  out.message = "there is no map to align yet; let both explore first";
+  const bool is_source = !has_map(source);
+  out.message = std::string("the ") + (is_source ? "source" : "target") + " has " +
+                std::to_string((is_source ? source : target).points.size()) + " points of surface, " +
+                std::to_string(kMinSurfacePoints) + " asked; let it explore first";
   return out;
 }
 
@@ -197,7 +200,7 @@ Alignment worded(Alignment out, const MovedThings& moved) {
 
 Alignment align(const AlignMap& target, const AlignMap& source, const std::optional<Transform>& guess, int threads) {
   Alignment out;
-  if (!has_map(target) || !has_map(source)) return no_map();
+  if (!has_map(target) || !has_map(source)) return no_map(target, source);
   std::optional<Vicinity> vicinity;
   if (guess) vicinity = around_guess(*guess);
   const std::vector<Hypothesis> hypotheses = find_hypotheses(target, source, vicinity, threads);
@@ -224,14 +227,14 @@ Alignment align(const AlignMap& target, const AlignMap& source, const std::optio
     out.reason = AlignReason::kLowOverlap;
     out.message = "what was found lies farther from the guess than 2 m and 45 degrees; give a better guess, or none";
   }
-  if (out.accepted()) find_rivals(target, source, hypotheses, found, threads, out);
+  if (out.accepted()) find_rivals(target, source, hypotheses, found, origin, threads, out);
   if (out.accepted()) try_mirrored(target, source, found, moved, threads, out);
   return worded(std::move(out), moved);
 }
 
 Alignment recheck(const AlignMap& target, const AlignMap& source, const Transform& T_target_source, int threads) {
   Alignment out;
-  if (!has_map(target) || !has_map(source)) return no_map();
+  if (!has_map(target) || !has_map(source)) return no_map(target, source);
   out.hypotheses = 1;
   const GicpResult fine = refine_finely(target, source, T_target_source, threads);
   judge(target, source, fine, Origin::kGuess, threads, out);

@@ -34,6 +34,8 @@ constexpr double kMaxLevelAgainst = 0.15;
 constexpr double kFewAgainst = 0.02;
 /// A rival: less against it than this, than it might have to be accepted, or than is against the answer and a little.
 constexpr double kPlausibleAgainst = 0.05;
+constexpr double kPlausibleTimes = 5.0;  // as much as is against the answer, where nobody said which place
+constexpr double kMostPlausible = 0.10;
 constexpr double kMoreAgainst = 0.02;
 constexpr double kMoreLevelAgainst = 0.04;
 /// Refinement takes some of what speaks against a rough place away.
@@ -145,9 +147,14 @@ bool may_rival(const Support& rough) {
          rough.level().share_against() <= kRoughLevelAgainst;
 }
 
-bool is_rival(const Support& place, const Support& accepted) {
+bool is_rival(const Support& place, const Support& accepted, Origin origin) {
   const Verdicts upright = place.upright();
-  const double walls = std::max({kPlausibleAgainst, accepted.upright().share_against() + kMoreAgainst,
+  double plausible = kPlausibleAgainst;
+  if (origin == Origin::kAnywhere) {
+    const double times = kPlausibleTimes * accepted.upright().share_against();
+    plausible = std::clamp(times, kPlausibleAgainst, kMostPlausible);
+  }
+  const double walls = std::max({plausible, accepted.upright().share_against() + kMoreAgainst,
                                  between(kMaxAgainstRoom, kMaxAgainstBuilding, upright.matched)});
   const double levels = std::max(kMaxLevelAgainst, accepted.level().share_against() + kMoreLevelAgainst);
   return overlap(place) >= kWithGuess.min_overlap && upright.share_against() <= walls &&

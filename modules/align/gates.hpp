@@ -28,8 +28,9 @@ struct GateAnswer {
 /// Whether a place, roughly refined, may turn out to be a rival.
 [[nodiscard]] bool may_rival(const Support& rough);
 /// Whether a refined place speaks against another one that passed the gates: enough overlap, and little against it, or
-/// hardly more than against the other; however loosely it is held.
-[[nodiscard]] bool is_rival(const Support& place, const Support& accepted);
+/// hardly more than against the other; however loosely it is held. Where nobody said which, five times as much as is
+/// against the other: in a row of offices each has its chairs elsewhere.
+[[nodiscard]] bool is_rival(const Support& place, const Support& accepted, Origin origin);
 
 /// Whether a place may be that of a mirror image: in a room, below what is a building, a few percent of the walls are
 /// all that tells the two apart; and where hardly anything is against the source, no mirror image lies better.

@@ -44,10 +44,11 @@ void add_align(Program& program) {
   command.add_option("source", options->source, "an agent, or a file: .bt, .ot, .pcd or .ply")->required();
   command.add_option("target", options->target,
                      "another agent or file; without it the map, as the other agents make it");
-  command.add_option(
-      "--guess", options->guess,
-      "T_target_source as \"x y z qx qy qz qw\", within 2 m and 45 degrees of yaw; without it the source "
-      "is looked for everywhere");
+  command
+      .add_option("--guess", options->guess,
+                  "T_target_source as \"x y z qx qy qz qw\", within 2 m and 45 degrees of yaw; without it the source "
+                  "is looked for everywhere")
+      ->check([](const std::string& text) { return text.empty() ? "it is empty" : ""; });
   command.add_flag("--from-files", options->from_files, "both are files; so they are where their names say it");
   command.add_option("--picture", options->picture, "writes a PNG: both from above, before and after");
   command.add_flag("--accept", options->accept, "puts the agent there if it is found");

@@ -66,8 +66,12 @@ Result<Sightings::Seen> DetectionsNode::see(const Detection& detection) {
   if (!asset) return tl::unexpected(asset.error());
   const auto T_map_frame = parts_.T_map_frame(detection.frame);
   if (!T_map_frame) return tl::unexpected(T_map_frame.error());
+  const Transform T_map_asset = *T_map_frame * detection.T_frame_asset;
+  if (T_map_asset.translation().cwiseAbs().maxCoeff() >= kMaxVoxel * context_.site.resolution) {
+    return refuse(Code::kOutOfBounds, "it lies beyond the map's bounds");
+  }
   follow_injections();
-  return sightings_.see(detection, (*asset)->name, (*asset)->class_name, *T_map_frame * detection.T_frame_asset);
+  return sightings_.see(detection, (*asset)->name, (*asset)->class_name, T_map_asset);
 }
 
 Result<const Asset*> DetectionsNode::asset_called(const std::string& name) const {

@@ -70,7 +70,8 @@ RC_GTEST_PROP(ObjectFit, BringsAChairBackFromADecimetreAndTenDegrees, ()) {
   const ObjectFit fit = fit_object(*points, scanned(truth), kResolution, said);
   const Eigen::Vector3d middle(0, 0, 0.5);
   RC_ASSERT((fit.T_map_model * middle - truth * middle).norm() < 1.5 * kResolution);
-  RC_ASSERT(Eigen::AngleAxisd(truth.linear().transpose() * fit.T_map_model.linear()).angle() < 0.1);
+  // A voxel at its legs, 0.25 m from the middle, is 0.2 rad: what the lattice hides.
+  RC_ASSERT(Eigen::AngleAxisd(truth.linear().transpose() * fit.T_map_model.linear()).angle() < 0.2);
   RC_ASSERT(fit.matched > 0.9);
   RC_ASSERT(fit.rms < kResolution);
 }

@@ -127,12 +127,12 @@ test("labelled things and assets are listed, changed, taken away, and what was s
   const desk = page.locator("article", { hasText: "desk 1" });
   await desk.getByText("label", { exact: true }).waitFor();
   await page.locator("article", { hasText: "chair 1" }).getByText("asset", { exact: true }).waitFor();
-  await page.getByLabel("Class of desk 1").fill("table");
+  await page.getByLabel("Class of desk 1", { exact: true }).fill("table");
   await page.getByRole("button", { name: "Change the class of desk 1" }).click();
   await page.getByText("desk 1 is table 1 now.").waitFor();
   assert.deepEqual(server.lastAsked("instance_reassign"), { label: 3, instance: 1, class_name: "table" });
   await page.getByRole("button", { name: "List labels" }).click();
-  await page.getByLabel("New name of desk").fill("workbench");
+  await page.getByLabel("New name of desk", { exact: true }).fill("workbench");
   await page.getByRole("button", { name: "Rename the label desk" }).click();
   await page.getByText("desk is called workbench now.").waitFor();
   assert.deepEqual(server.lastAsked("label_rename"), { label: 3, name: "workbench" });
