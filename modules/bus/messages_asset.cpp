@@ -7,6 +7,7 @@
 #include <concord/asset_request_t.hpp>
 #include <concord/assets_t.hpp>
 
+#include "bus/translate_list.hpp"
 #include "bus/translate_shape.hpp"
 
 namespace concord {
@@ -15,7 +16,6 @@ namespace {
 using wire::bad;
 
 constexpr std::int64_t kFileLength = 200;
-constexpr std::size_t kBeforeItems = 8 + 8 + 8 + 4 + 4 + 4;
 
 Result<std::string> name_of(const std::string& name) {
   if (is_name(name)) return name;
@@ -53,6 +53,17 @@ Result<std::string> injection_of(const std::string& id) {
 Result<InstanceId> instance_of(std::int32_t label, std::int32_t instance) {
   if (label > 0 && instance > 0) return InstanceId{static_cast<ClassId>(label), static_cast<std::uint32_t>(instance)};
   return refuse(Code::kBadRequest, "say what is meant: of, or the numbers of an instance, which count from 1");
+}
+
+asset_t to_wire(const Asset& asset) {
+  asset_t out{};
+  out.name = asset.name;
+  out.class_name = asset.class_name;
+  out.file = asset.file;
+  out.unit = asset.unit;
+  out.gltf_bytes = asset.gltf_bytes;
+  for (int i = 0; i < 3; ++i) out.size[i] = asset.size[i];
+  return out;
 }
 
 Decoded<Asset> from_wire(const asset_t& in) {
@@ -108,42 +119,14 @@ Decoded<AssetRequest> decode<AssetRequest>(std::span<const std::uint8_t> bytes) 
 }
 
 Bytes encode(const ListPart<Asset>& value, std::int64_t utime) {
-  assets_t out;
-  out.utime = utime;
-  out.content = static_cast<std::int64_t>(value.content);
-  out.part = value.part;
-  out.parts = value.parts;
-  out.count = static_cast<std::int32_t>(value.items.size());
-  for (const Asset& asset : value.items) {
-    auto& one = out.assets.emplace_back();
-    one.name = asset.name;
-    one.class_name = asset.class_name;
-    one.file = asset.file;
-    one.unit = asset.unit;
-    one.gltf_bytes = asset.gltf_bytes;
-    for (int i = 0; i < 3; ++i) one.size[i] = asset.size[i];
-  }
-  return wire::to_bytes(out);
+  return wire::write_list(value, utime, &assets_t::assets, to_wire);
 }
 
 template <>
 Decoded<ListPart<Asset>> decode<ListPart<Asset>>(std::span<const std::uint8_t> bytes) {
   static constexpr WireField kAsset[] = {text(wire::kNameLength), text(wire::kTitleLength), text(kFileLength),
                                          fixed(8 + 8 + 8 * 3)};
-  static constexpr WireField kLayout[] = {fixed(8 + 8 + 4 + 4), count(kMostInPart), records(kAsset)};
-  const auto in = wire::from_bytes<assets_t>(bytes, kLayout);
-  if (!in) return bad(in.error());
-  if (auto fine = wire::check_part(in->part, in->parts, static_cast<std::int64_t>(kMaxAssets)); !fine)
-    return bad(fine.error());
-  ListPart<Asset> out{static_cast<std::uint64_t>(in->content), in->part, in->parts, {}, {}};
-  for (const auto& one : in->assets) {
-    auto value = from_wire(one);
-    if (!value) return tl::unexpected(value.error());
-    out.items.push_back(std::move(*value));
-  }
-  const auto encoded = bytes.subspan(kBeforeItems);
-  out.encoded.assign(encoded.begin(), encoded.end());
-  return out;
+  return wire::read_list<Asset>(bytes, &assets_t::assets, kAsset, static_cast<std::int64_t>(kMaxAssets), from_wire);
 }
 
 }  // namespace concord

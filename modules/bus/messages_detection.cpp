@@ -6,6 +6,7 @@
 #include <concord/detection_t.hpp>
 #include <concord/things_t.hpp>
 
+#include "bus/translate_list.hpp"
 #include "bus/translate_shape.hpp"
 #include "core/assets.hpp"
 
@@ -13,8 +14,6 @@ namespace concord {
 namespace {
 
 using wire::bad;
-
-constexpr std::size_t kBeforeItems = 8 + 8 + 8 + 4 + 4 + 4;
 
 std::int8_t to_wire(DetectionDecision::Op op) {
   return op == DetectionDecision::Op::kConfirm ? detection_decision_t::CONFIRM : detection_decision_t::DROP;
@@ -125,14 +124,7 @@ Decoded<DetectionDecision> decode<DetectionDecision>(std::span<const std::uint8_
 }
 
 Bytes encode(const ListPart<Thing>& value, std::int64_t utime) {
-  things_t out;
-  out.utime = utime;
-  out.content = static_cast<std::int64_t>(value.content);
-  out.part = value.part;
-  out.parts = value.parts;
-  out.count = static_cast<std::int32_t>(value.items.size());
-  for (const Thing& thing : value.items) out.things.push_back(to_wire(thing));
-  return wire::to_bytes(out);
+  return wire::write_list(value, utime, &things_t::things, to_wire);
 }
 
 template <>
@@ -144,21 +136,7 @@ Decoded<ListPart<Thing>> decode<ListPart<Thing>>(std::span<const std::uint8_t> b
                                          text(wire::kIdLength),
                                          fixed(wire::kTransformBytes),
                                          text(wire::kIdLength)};
-  static constexpr WireField kLayout[] = {fixed(8 + 8 + 4 + 4), count(kMostInPart), records(kThing)};
-  const auto in = wire::from_bytes<things_t>(bytes, kLayout);
-  if (!in) return bad(in.error());
-  if (auto fine = wire::check_part(in->part, in->parts, static_cast<std::int64_t>(kMaxThings)); !fine) {
-    return bad(fine.error());
-  }
-  ListPart<Thing> out{static_cast<std::uint64_t>(in->content), in->part, in->parts, {}, {}};
-  for (const auto& one : in->things) {
-    auto value = from_wire(one);
-    if (!value) return tl::unexpected(value.error());
-    out.items.push_back(std::move(*value));
-  }
-  const auto encoded = bytes.subspan(kBeforeItems);
-  out.encoded.assign(encoded.begin(), encoded.end());
-  return out;
+  return wire::read_list<Thing>(bytes, &things_t::things, kThing, static_cast<std::int64_t>(kMaxThings), from_wire);
 }
 
 }  // namespace concord

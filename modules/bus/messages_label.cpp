@@ -9,6 +9,7 @@
 #include <concord/label_request_t.hpp>
 #include <concord/label_slots_t.hpp>
 
+#include "bus/translate_list.hpp"
 #include "bus/translate_shape.hpp"
 
 namespace concord {
@@ -21,7 +22,6 @@ using Kind = LabelQuery::Kind;
 constexpr std::int64_t kMaxListParts = 8192;  ///< of kMaxLabelSlots, 64 a part at most, with the longest names
 constexpr std::int64_t kMaxAnswerParts = kMaxLabelSlots;
 constexpr double kMostRadius = 100.0;
-constexpr std::size_t kBeforeItems = 8 + 8 + 8 + 4 + 4 + 4;
 
 constexpr std::array<std::pair<std::int8_t, Op>, 9> kOps{{{label_request_t::LABEL, Op::kLabel},
                                                           {label_request_t::RESTORE, Op::kRestore},
@@ -102,6 +102,15 @@ Decoded<LabelInstance> from_wire(const label_instance_t& in) {
   out.require(is_asset ? Result<void>() : refuse(Code::kBadName, "an instance is an asset that has no name"));
   out.take(&LabelInstance::asset, Result<std::string>(in.asset));
   return out.done();
+}
+
+label_slot_t to_wire(const LabelSlot& slot) {
+  label_slot_t out{};
+  out.slot = slot.slot;
+  out.label = static_cast<std::int32_t>(slot.of.label);
+  out.instance = static_cast<std::int32_t>(slot.of.instance);
+  out.name = slot.name;
+  return out;
 }
 
 Decoded<LabelSlot> from_wire(const label_slot_t& in) {
@@ -236,38 +245,13 @@ Decoded<LabelList> decode<LabelList>(std::span<const std::uint8_t> bytes) {
 }
 
 Bytes encode(const ListPart<LabelSlot>& value, std::int64_t utime) {
-  label_slots_t out;
-  out.utime = utime;
-  out.content = static_cast<std::int64_t>(value.content);
-  out.part = value.part;
-  out.parts = value.parts;
-  out.count = static_cast<std::int32_t>(value.items.size());
-  for (const LabelSlot& slot : value.items) {
-    auto& one = out.slots.emplace_back();
-    one.slot = slot.slot;
-    one.label = static_cast<std::int32_t>(slot.of.label);
-    one.instance = static_cast<std::int32_t>(slot.of.instance);
-    one.name = slot.name;
-  }
-  return wire::to_bytes(out);
+  return wire::write_list(value, utime, &label_slots_t::slots, to_wire);
 }
 
 template <>
 Decoded<ListPart<LabelSlot>> decode<ListPart<LabelSlot>>(std::span<const std::uint8_t> bytes) {
   static constexpr WireField kSlot[] = {fixed(4 * 3), text(wire::kTitleLength)};
-  static constexpr WireField kLayout[] = {fixed(8 + 8 + 4 + 4), count(kMostInPart), records(kSlot)};
-  const auto in = wire::from_bytes<label_slots_t>(bytes, kLayout);
-  if (!in) return bad(in.error());
-  if (auto fine = wire::check_part(in->part, in->parts, kMaxListParts); !fine) return bad(fine.error());
-  ListPart<LabelSlot> out{static_cast<std::uint64_t>(in->content), in->part, in->parts, {}, {}};
-  for (const auto& one : in->slots) {
-    auto value = from_wire(one);
-    if (!value) return tl::unexpected(value.error());
-    out.items.push_back(std::move(*value));
-  }
-  const auto encoded = bytes.subspan(kBeforeItems);
-  out.encoded.assign(encoded.begin(), encoded.end());
-  return out;
+  return wire::read_list<LabelSlot>(bytes, &label_slots_t::slots, kSlot, kMaxListParts, from_wire);
 }
 
 }  // namespace concord

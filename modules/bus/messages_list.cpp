@@ -5,6 +5,7 @@
 #include <concord/list_request_t.hpp>
 #include <concord/zones_t.hpp>
 
+#include "bus/translate_list.hpp"
 #include "bus/translate_shape.hpp"
 
 namespace concord {
@@ -16,8 +17,6 @@ using wire::bad;
 constexpr std::int64_t kMaxParts = kMaxZones;
 /// Of any list: what the longest takes, the label slots.
 constexpr std::int64_t kMaxPartsOfAny = 8192;
-/// Fingerprint, utime, content, part, parts, count.
-constexpr std::size_t kBeforeItems = 8 + 8 + 8 + 4 + 4 + 4;
 
 /// What was once taken from a person is said as it is.
 Result<std::string> line(const std::string& text) {
@@ -80,51 +79,23 @@ constexpr WireField kZone[] = {
 constexpr WireField kLease[] = {text(wire::kIdLength), text(wire::kIdLength), wire::kVolume,
                                 fixed(wire::kTransformBytes + 8)};
 
-auto& items_in(zones_t& message) { return message.zones; }
-auto& items_in(leases_t& message) { return message.leases; }
-
-template <class Lcm, class T>
-Bytes write(const ListPart<T>& value, std::int64_t utime) {
-  Lcm out;
-  out.utime = utime;
-  out.content = static_cast<std::int64_t>(value.content);
-  out.part = value.part;
-  out.parts = value.parts;
-  out.count = static_cast<std::int32_t>(value.items.size());
-  for (const T& item : value.items) items_in(out).push_back(to_wire(item));
-  return wire::to_bytes(out);
-}
-
-template <class Lcm, class T>
-Decoded<ListPart<T>> read(std::span<const std::uint8_t> bytes, std::span<const WireField> item) {
-  const WireField layout[] = {fixed(8 + 8 + 4 + 4), count(kMostInPart), records(item)};
-  auto in = wire::from_bytes<Lcm>(bytes, layout);
-  if (!in) return bad(in.error());
-  if (auto fine = wire::check_part(in->part, in->parts, kMaxParts); !fine) return bad(fine.error());
-  ListPart<T> out{static_cast<std::uint64_t>(in->content), in->part, in->parts, {}, {}};
-  for (const auto& one : items_in(*in)) {
-    auto value = from_wire(one);
-    if (!value) return tl::unexpected(value.error());
-    out.items.push_back(std::move(*value));
-  }
-  const auto encoded = bytes.subspan(kBeforeItems);
-  out.encoded.assign(encoded.begin(), encoded.end());
-  return out;
-}
-
 }  // namespace
 
-Bytes encode(const ListPart<Zone>& value, std::int64_t utime) { return write<zones_t>(value, utime); }
-Bytes encode(const ListPart<Lease>& value, std::int64_t utime) { return write<leases_t>(value, utime); }
+Bytes encode(const ListPart<Zone>& value, std::int64_t utime) {
+  return wire::write_list(value, utime, &zones_t::zones, to_wire);
+}
+Bytes encode(const ListPart<Lease>& value, std::int64_t utime) {
+  return wire::write_list(value, utime, &leases_t::leases, to_wire);
+}
 
 template <>
 Decoded<ListPart<Zone>> decode<ListPart<Zone>>(std::span<const std::uint8_t> bytes) {
-  return read<zones_t, Zone>(bytes, kZone);
+  return wire::read_list<Zone>(bytes, &zones_t::zones, kZone, kMaxParts, from_wire);
 }
 
 template <>
 Decoded<ListPart<Lease>> decode<ListPart<Lease>>(std::span<const std::uint8_t> bytes) {
-  return read<leases_t, Lease>(bytes, kLease);
+  return wire::read_list<Lease>(bytes, &leases_t::leases, kLease, kMaxParts, from_wire);
 }
 
 Bytes encode(const ListDigest& value, std::int64_t utime) {

@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <stdexcept>
 
 #include "bus/site.hpp"
 #include "core/byte_stream.hpp"
@@ -11,6 +10,7 @@
 #include "core/voxel_boxes.hpp"
 #include "merge/merge_schema.hpp"
 #include "merge/number_text.hpp"
+#include "store/site_resolution.hpp"
 
 namespace concord {
 namespace {
@@ -57,21 +57,10 @@ MergeStore::MergeStore(const std::filesystem::path& file, double resolution)
       put_zone_(database_.prepare("INSERT INTO zones VALUES (?,?,?,?,?,?,?,?,?)")),
       put_placement_(database_.prepare("INSERT INTO placements VALUES (?,?,?,?,?,?,?,?)")),
       put_weight_(database_.prepare("INSERT INTO weights VALUES (?,?)")) {
-  check_resolution(resolution);
-}
-
-void MergeStore::check_resolution(double resolution) {
-  Statement read = database_.prepare("SELECT resolution FROM site");
-  const Result<bool> row = read.step();
-  if (!row) throw std::runtime_error(row.error().message);
-  if (!*row) {
-    read.reset();
-    const auto written = database_.prepare("INSERT INTO site VALUES (?)").run(resolution);
-    if (!written) throw std::runtime_error(written.error().message);
-  } else if (std::abs(read.real(0) - resolution) > 1e-9) {
-    throw ConfigError("the edits in this state folder are for " + std::to_string(read.real(0)) +
-                      " m voxels; set resolution to that, or start with another state folder");
-  }
+  const double kept = kept_resolution(database_, resolution);
+  if (std::abs(kept - resolution) <= 1e-9) return;
+  throw ConfigError("the edits in this state folder are for " + std::to_string(kept) +
+                    " m voxels; set resolution to that, or start with another state folder");
 }
 
 /// What belongs to a correction beside its row in `corrections`.

@@ -32,7 +32,6 @@ class MergeStore {
   struct PutDetail;
   struct Readers;
 
-  void check_resolution(double resolution);
   [[nodiscard]] Result<void> put_one(const Correction& correction);
 
   Database database_;

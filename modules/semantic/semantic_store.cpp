@@ -1,12 +1,12 @@
 #include "semantic/semantic_store.hpp"
 
 #include <cmath>
-#include <stdexcept>
 
 #include "bus/site.hpp"
 #include "core/map_archive_fields.hpp"
 #include "semantic/label_section.hpp"
 #include "semantic/semantic_schema.hpp"
+#include "store/site_resolution.hpp"
 
 namespace concord {
 namespace {
@@ -21,21 +21,10 @@ SemanticStore::SemanticStore(const std::filesystem::path& file, double resolutio
     : database_(file, kSemanticSchema),
       put_(database_.prepare("INSERT INTO corrections VALUES (?,?,?)")),
       place_(database_.prepare("INSERT OR REPLACE INTO placements VALUES (?,?,?)")) {
-  check_resolution(resolution);
-}
-
-void SemanticStore::check_resolution(double resolution) {
-  Statement read = database_.prepare("SELECT resolution FROM site");
-  const Result<bool> row = read.step();
-  if (!row) throw std::runtime_error(row.error().message);
-  if (!*row) {
-    read.reset();
-    const auto written = database_.prepare("INSERT INTO site VALUES (?)").run(resolution);
-    if (!written) throw std::runtime_error(written.error().message);
-  } else if (std::abs(read.real(0) - resolution) > 1e-9) {
-    throw ConfigError("the labels in this state folder are for " + std::to_string(read.real(0)) +
-                      " m voxels; set resolution to that, or start with another state folder");
-  }
+  const double kept = kept_resolution(database_, resolution);
+  if (std::abs(kept - resolution) <= 1e-9) return;
+  throw ConfigError("the labels in this state folder are for " + std::to_string(kept) +
+                    " m voxels; set resolution to that, or start with another state folder");
 }
 
 Result<void> SemanticStore::put(const LabelCorrection& correction) {

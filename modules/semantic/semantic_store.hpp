@@ -29,8 +29,6 @@ class SemanticStore {
   [[nodiscard]] Result<std::vector<LabelAnchor>> placements();
 
  private:
-  void check_resolution(double resolution);
-
   Database database_;
   Statement put_, place_;
 };

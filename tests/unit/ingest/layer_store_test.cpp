@@ -1,11 +1,13 @@
 #include "ingest/layer_store.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <csignal>
 #include <optional>
 
 #include "layers.hpp"
@@ -224,19 +226,23 @@ TEST_F(LayerStoreTest, layers_that_are_added_together_are_all_there_or_none_when
   };
   const std::vector<std::pair<std::string, Agent>> both{{"a", layer(kFree)}, {"b", layer(kOccupied)}};
   store_.reset();
+  constexpr rlim_t kLogged = 1'000'000;
   const pid_t child = ::fork();
   if (child == 0) {
+    // Pages go to the log before the commit, because they are more than its cache holds: the kernel kills it there.
+    const rlimit no_core{0, 0};
+    const rlimit logged{kLogged, kLogged};
+    ::setrlimit(RLIMIT_CORE, &no_core);
+    ::setrlimit(RLIMIT_FSIZE, &logged);
+    ::signal(SIGXFSZ, SIG_DFL);
     open();
     (void)store_->add(both);
     ::_exit(0);
   }
-  // Pages go to the log before the commit, because they are more than its cache holds.
-  const fs::path log = folder_ / "ingest.db-wal";
-  std::error_code error;
-  while (::waitpid(child, nullptr, WNOHANG) == 0) {
-    if (fs::file_size(log, error) > 1'000'000 && !error) ::kill(child, SIGKILL);
-  }
-  EXPECT_GT(fs::file_size(log), 1'000'000U) << "it was killed in the midst of writing";
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGXFSZ) << "it was killed in the midst of writing";
+  EXPECT_EQ(fs::file_size(folder_ / "ingest.db-wal"), kLogged);
   EXPECT_TRUE(reload().agents.empty());
 
   ASSERT_TRUE(store_->add(both));
