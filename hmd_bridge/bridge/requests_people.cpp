@@ -51,7 +51,8 @@ Granted<concord::ZoneRequest> zone_of(Desk& desk, const Ask& ask, const std::str
   if (zone.kind == concord::Zone::Kind::kCostly) zone.cost = kCostOfCostly;
   // What headsets cannot say stays as it was.
   for (const concord::Zone& known : desk.world.zones()) {
-    if (known.name == name && known.kind == zone.kind) std::tie(zone.margin, zone.cost) = {known.margin, known.cost};
+    if (known.name == name && known.kind == zone.kind)
+      std::tie(zone.margin, zone.cost) = std::tie(known.margin, known.cost);
   }
   zone.volume = std::move(*drawn);
   zone.frame = where->frame;
