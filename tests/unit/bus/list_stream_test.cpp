@@ -101,7 +101,7 @@ TEST_F(ListStream, IsHandedOnWholeAndOnceWhenItChanges) {
   sender_->set(zones(200));
   ASSERT_GE(settle(zones(200), 50'000), 0);
   EXPECT_EQ(copy.changes, 1);
-  EXPECT_EQ(*parts, 50);
+  EXPECT_EQ(*parts, 67);
   sender_->set(zones(200));
   run(5 * kSecond);
   EXPECT_EQ(copy.changes, 1) << "it is as it was";
