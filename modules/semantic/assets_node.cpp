@@ -15,7 +15,7 @@ namespace {
 
 const std::string kRequests = "in/asset";
 constexpr std::int64_t kPeriod = 1'000'000;
-constexpr int kMostOperations = 10'000;
+constexpr std::size_t kMostOperations = 10'000;  ///< in one answer of merge's history
 constexpr std::size_t kSentAtOnce = 16;
 
 std::uint64_t content_without_time(AssetRequest request) {
@@ -30,7 +30,8 @@ AssetsNode::AssetsNode(const NodeContext& context, Parts parts)
       parts_(std::move(parts)),
       replies_(context),
       gltf_(context.site.state / "assets"),
-      list_(context.bus, context.counters, "out/assets", context.site.stream.bytes_per_second) {
+      list_(context.bus, context.counters, "out/assets", context.site.stream.bytes_per_second),
+      question_("semantic-" + std::to_string(context.boot_id) + "-") {
   Bus& bus = context_.bus;
   listen<AssetRequest>(bus, context_.counters, context_.process, kRequests,
                        [this](const std::string&, const AssetRequest& request) { on_request(request); });
@@ -45,7 +46,8 @@ AssetsNode::AssetsNode(const NodeContext& context, Parts parts)
                       [this](const std::string&, const HistoryPart& part) { on_history(part); });
   list();
   bus.every(kPeriod, [this] {
-    history_id_.clear();  // what was not answered in a second is asked again
+    has_news_ = has_news_ || !history_id_.empty();  // what was not answered in a second is asked again
+    history_id_.clear();
     ask_history();
     send_waiting();
     if (const auto written = gltf_.write_next(assets_); !written) context_.counters.refused("assets", written.error());
@@ -160,10 +162,11 @@ Result<LabelCorrection::Claim> AssetsNode::claim_of(LabelRequest label, Injectio
   return claim;
 }
 
-/// Merge's word on one of our edits. What it took may have been undone since: its history says.
+/// Merge's word on one of our edits, or on what others asked for: either may be news to its history. An answer's
+/// revision is none of the history's where a map was saved, so only the status says how far that goes.
 void AssetsNode::on_answer(const Answer& answer) {
-  if (answer.process != "merge") return;
-  heard_revision_ = std::max(heard_revision_, answer.revision);
+  if (answer.process != "merge" || answer.id.starts_with(question_)) return;
+  has_news_ = true;
   if (const std::string asked = asked_removal(answer.id); !asked.empty()) {
     concord::answer(context_.bus,
                     {asked, context_.process, answer.ok, answer.code, answer.message, answer.revision, answer.count});
@@ -196,9 +199,11 @@ void AssetsNode::take_back(const Labels::Waiting& refused, const Answer& why) {
 }
 
 void AssetsNode::ask_history() {
-  if (!history_id_.empty() || heard_revision_ <= known_revision_) return;
+  if (!history_id_.empty() || (!has_news_ && heard_revision_ <= known_revision_)) return;
   HistoryRequest request;
-  history_id_ = "semantic-" + std::to_string(context_.boot_id) + "-" + std::to_string(known_revision_);
+  history_id_ = question_ + std::to_string(++questions_);
+  has_news_ = false;
+  asked_revision_ = heard_revision_;
   history_.clear();
   request.id = history_id_;
   request.after_revision = known_revision_;
@@ -214,7 +219,9 @@ void AssetsNode::on_history(const HistoryPart& part) {
   const auto parts = std::exchange(history_, {});
   history_id_.clear();
   BrickSet touched;
+  std::size_t count = 0;
   for (const auto& [number, one] : parts) {
+    count += one.operations.size();
     for (const Operation& operation : one.operations) {
       known_revision_ = std::max(known_revision_, operation.revision);
       if (const std::string asked = asked_removal(operation.id); !asked.empty()) removed_[asked] = operation.subject;
@@ -226,10 +233,15 @@ void AssetsNode::on_history(const HistoryPart& part) {
       }
     }
   }
+  if (count < kMostOperations) {
+    known_revision_ = std::max(known_revision_, asked_revision_);
+  } else {
+    has_news_ = true;
+  }
   parts_.refresh(touched);
   send_waiting();
   answer_askers();
-  ask_history();  // there may be more
+  ask_history();
 }
 
 void AssetsNode::answer_askers() {

@@ -20,7 +20,7 @@ namespace concord {
 /// asked for when merge has the first, each second until it is so; refused, the first is undone.
 ///
 /// Which edits hold is merge's to say: its history is asked for what is after the revision that is known, whenever
-/// merge's answers or its status show a later one.
+/// merge has answered somebody or its status shows a later one.
 class AssetsNode {
  public:
   struct Parts {
@@ -68,8 +68,12 @@ class AssetsNode {
   std::map<std::string, std::string> asked_;    ///< requests whose askers wait for an answer; the remark in it
   std::map<std::string, std::string> removed_;  ///< the edits that requests took out
   std::int64_t known_revision_ = 0;             ///< of merge's history
-  std::int64_t heard_revision_ = -1;            ///< the highest that merge has spoken of
-  std::string history_id_;                      ///< of the question that is open; empty: none
+  std::int64_t heard_revision_ = -1;            ///< of merge's history, by its status
+  std::int64_t asked_revision_ = -1;            ///< what was heard when it was asked last: the answer reaches as far
+  bool has_news_ = false;                       ///< merge has answered somebody since it was asked last
+  std::string question_;                        ///< what the ids of our questions begin with
+  std::int64_t questions_ = 0;
+  std::string history_id_;  ///< of the question that is open; empty: none
   std::map<std::int32_t, HistoryPart> history_;
 };
 

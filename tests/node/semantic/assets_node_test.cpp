@@ -190,6 +190,28 @@ TEST_F(AssetsNodeTest, WhatMergeRefusesIsNotThere) {
   EXPECT_EQ(seen_at(25), "box 2");  // no number twice
 }
 
+TEST_F(AssetsNodeTest, ARevisionOfTheMapInASavesAnswerIsNoneOfTheHistory) {
+  ASSERT_TRUE(inject("a1", "cube", 2.0).ok);
+  run();
+  int questions = 0;
+  bus_->subscribe("in/history_request", [&questions](const std::string&, auto) { ++questions; });
+  bus_->publish("out/answer", encode(Answer{"save1", "merge", true, "OK", "saved", 18'695, 1}, bus_->now()));
+  run();
+  EXPECT_EQ(questions, 1) << "it may have been news";
+  EXPECT_TRUE(inject("a2", "cube", 5.0).ok);
+}
+
+TEST_F(AssetsNodeTest, HistoryThatWasNotAnsweredIsAskedForAgain) {
+  stop();
+  bus_ = std::make_unique<LockstepBus>(bus_->now());  // merge is not there
+  semantic_ = std::make_unique<SemanticNode>(NodeContext{*bus_, counters_, site_, "semantic", bus_->now()});
+  int questions = 0;
+  bus_->subscribe("in/history_request", [&questions](const std::string&, auto) { ++questions; });
+  bus_->publish("out/answer", encode(Answer{"u1", "merge", true, "OK", "undone", 7, 1}, bus_->now()));
+  run(3'500'000);
+  EXPECT_EQ(questions, 4) << "at once, and each second";
+}
+
 TEST_F(AssetsNodeTest, RefusesWhatIsNoAsset) {
   EXPECT_EQ(inject("a1", "sphere", 0).code, "NOT_FOUND");
   EXPECT_EQ(inject("a2", "none", 0).code, "NOT_FOUND");
