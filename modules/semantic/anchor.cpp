@@ -45,9 +45,9 @@ LabelAnchor anchor_of(const std::vector<VoxelIndex>& voxels, const AgentLayers& 
   for (const auto& [agent, layer] : layers) {
     if (!layer.T_map_agent) continue;
     const LatticeTransform lattice(*layer.T_map_agent, resolution);
-    const auto count = static_cast<std::size_t>(std::ranges::count_if(voxels, [&](VoxelIndex v) {
+    const auto count = static_cast<std::size_t>(std::ranges::count_if(voxels, [&, &map = layer.map](VoxelIndex v) {
       const VoxelIndex own = holding(lattice.to_layer(centre(v)));
-      return in_bounds(own) && is_occupied(layer.map.at(own));
+      return in_bounds(own) && is_occupied(map.at(own));
     }));
     if (count <= most || 2 * count < voxels.size()) continue;
     most = count;
