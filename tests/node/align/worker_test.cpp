@@ -97,7 +97,7 @@ class MovingStation : public AlignStation {
           if (task.is_recheck && is_to_move_) {
             is_to_move_ = false;
             set_place("robot2", kT_left_right);
-            bus_.deliver();
+            bus_->deliver();
           }
           return found;
         }) {
