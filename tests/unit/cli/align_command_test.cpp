@@ -106,11 +106,18 @@ TEST_F(AlignFilesTest, TakesAGuessAndDrawsBeforeAndAfter) {
 /// What was found is printed whatever becomes of the picture, and in JSON there is nothing else.
 TEST_F(AlignFilesTest, APictureThatFailsTakesNothingFromWhatWasFound) {
   const std::string target = write("left.pcd", pcd(left_part())), source = write("right.pcd", pcd(right_part()));
-  EXPECT_EQ(align({source, target, "--picture", path("none/out.png")}), 2);
+  fs::create_directory(path("taken.png"));
+  EXPECT_EQ(align({source, target, "--picture", path("taken.png")}), 2);
   expect_found();
   const std::string one = write("one.pcd", pcd({{0, 0, 0}, {1, 0, 0}}));
   EXPECT_EQ(align({one, target, "--picture", path("out.png")}), 3) << "nothing to draw";
   EXPECT_EQ(said_["reason"], "NO_MAP");
+}
+
+TEST_F(AlignFilesTest, APictureIntoNoFolderIsRefusedBeforeAnythingIsRead) {
+  EXPECT_EQ(align({path("none.pcd"), path("none.pcd"), "--picture", path("none/out.png")}), 2);
+  EXPECT_EQ(said_["error"]["code"], "NOT_FOUND");
+  EXPECT_NE(said_["error"]["message"].get<std::string>().find("picture"), std::string::npos) << said_;
 }
 
 TEST_F(AlignFilesTest, AnotherRoomIsRefusedWithTheFigures) {
