@@ -10,7 +10,10 @@
 #include <yaml-cpp/yaml.h>
 
 #include "bus/lcm_url.hpp"
+#include "core/corrections.hpp"
+#include "core/label_corrections.hpp"
 #include "core/requests.hpp"
+#include "core/text.hpp"
 
 namespace concord {
 namespace {
@@ -128,6 +131,32 @@ void read_agents(const YAML::Node& node, Site& site) {
   }
 }
 
+ClassTerms read_class(const YAML::Node& node, const std::string& name) {
+  Section section(node, name);
+  ClassTerms terms;
+  section.read("margin", terms.margin, 0.0, Zone::kMaxMargin);
+  section.read("cost", terms.cost, 0, Zone::kMaxCost);
+  section.read("cost_margin", terms.cost_margin, 0.0, Zone::kMaxMargin);
+  section.done();
+  if (terms.cost == 0 && terms.cost_margin == 0.0) return terms;
+  if (terms.cost == 0 || terms.cost_margin <= terms.margin) {
+    fail(node, name + " needs both cost and cost_margin, the latter above margin");
+  }
+  return terms;
+}
+
+void read_classes(const YAML::Node& node, Site& site) {
+  if (!node || node.IsNull()) return;
+  if (!node.IsMap()) fail(node, "classes must hold one entry per class of labels");
+  if (node.size() > kMaxClasses) fail(node, "classes are over " + std::to_string(kMaxClasses));
+  (void)keys_once(node, "classes");
+  for (const auto& entry : node) {
+    const auto name = entry.first.as<std::string>();
+    if (!is_title(name)) fail(entry.first, "'" + name + "' is no name of a class");
+    site.classes[name] = read_class(entry.second, "classes." + name);
+  }
+}
+
 Policy read_policy(Section& section, Policy policy) {
   std::string name = policy == Policy::kMean ? "mean" : "table";
   section.read(
@@ -188,6 +217,7 @@ Site read_site(const YAML::Node& root, const std::filesystem::path& directory) {
   site.state = directory / state;  // an absolute path stays as it is
   top.read("resolution", site.resolution, 0.005, 1.0);
   read_agents(top.take("agents"), site);
+  read_classes(top.take("classes"), site);
 
   Section stream(top.take("stream"), "stream");
   stream.read("bytes_per_second", site.stream.bytes_per_second, 1e4, 1e9);
@@ -239,48 +269,6 @@ Site load_site(const std::filesystem::path& file) {
   } catch (const ConfigError& e) {
     throw ConfigError(file.string() + ": " + e.what());
   }
-}
-
-std::string to_yaml(const Site& site) {
-  YAML::Node root;
-  root["lcm_url"] = site.lcm_url;
-  root["beyond_host"] = site.beyond_host;
-  root["state"] = site.state.string();
-  root["resolution"] = site.resolution;
-  const auto put_agent = [&](const std::string& id, const AgentConfig& agent) {
-    root["agents"][id]["kind"] = agent.kind;
-    root["agents"][id]["weight"] = agent.weight;
-    root["agents"][id]["radius"] = agent.radius;
-    root["agents"][id]["speed"] = agent.speed;
-    if (!agent.footprint.empty()) {
-      root["agents"][id]["footprint"] = agent.footprint;
-      root["agents"][id]["turn_radius"] = agent.turn_radius;
-    }
-    if (!agent.band) return;
-    root["agents"][id]["zmin"] = agent.band->first;
-    root["agents"][id]["zmax"] = agent.band->second;
-  };
-  put_agent("unlisted", site.unlisted);
-  for (const auto& [id, agent] : site.agents) put_agent(id, agent);
-  root["stream"]["bytes_per_second"] = site.stream.bytes_per_second;
-  root["ingest"]["max_agents"] = site.ingest.max_agents;
-  root["ingest"]["max_known_voxels"] = site.ingest.max_known_voxels;
-  root["merge"]["policy"] = site.merge.policy == Policy::kMean ? "mean" : "table";
-  root["planner"]["zmin"] = site.planner.zmin;
-  root["planner"]["zmax"] = site.planner.zmax;
-  root["planner"]["free_share"] = site.planner.free_share;
-  root["bridge"]["listen"] = site.bridge.listen;
-  root["bridge"]["port"] = site.bridge.port;
-  root["bridge"]["tls"] = site.bridge.tls;
-  if (!site.bridge.certificate.empty()) root["bridge"]["certificate"] = site.bridge.certificate.string();
-  if (!site.bridge.key.empty()) root["bridge"]["key"] = site.bridge.key.string();
-  for (const std::string& origin : site.bridge.origins) root["bridge"]["origins"].push_back(origin);
-  root["bridge"]["local_role"] = site.bridge.local_role;
-  root["bridge"]["max_clients"] = site.bridge.max_clients;
-  YAML::Emitter out;
-  out.SetDoublePrecision(10);
-  out << root;
-  return out.c_str();
 }
 
 }  // namespace concord

@@ -26,6 +26,13 @@ struct AgentConfig {
   std::optional<std::pair<double, double>> band;
 };
 
+/// What holds for the ground around all things of a class of labels, seen from above.
+struct ClassTerms {
+  double margin = 0.0;       ///< metres that robots keep from them, 0 to 10; 0: no more than from anything
+  int cost = 0;              ///< within the cost's margin a metre costs so many more than elsewhere, 0 to 15
+  double cost_margin = 0.0;  ///< metres around them, above the margin and at most 10; with a cost
+};
+
 /// The one YAML file of a site: a section per process, unknown keys are errors. Defaults stand here.
 struct Site {
   std::string lcm_url = "udpm://239.255.76.67:7667?ttl=0";
@@ -35,6 +42,7 @@ struct Site {
 
   std::map<std::string, AgentConfig> agents;
   AgentConfig unlisted;
+  std::map<std::string, ClassTerms> classes;  ///< by name
 
   struct Stream {
     double bytes_per_second = 5e6;

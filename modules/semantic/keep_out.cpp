@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <utility>
 
 #include "core/text.hpp"
 
@@ -21,6 +20,7 @@ struct Outline {
   std::array<double, kSides> reach;
   double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
   std::string name;
+  int cost = 0;
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
 
   Outline() { reach.fill(std::numeric_limits<double>::lowest()); }
@@ -39,6 +39,7 @@ Eigen::Vector2d direction(int side) {
 Outline outline_of(const KeptClearOf& thing, double resolution) {
   Outline out;
   out.name = thing.name;
+  out.cost = thing.cost;
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   for (const VoxelIndex v : thing.voxels) {
     const Eigen::Vector3d p = centre_of(v, resolution);
@@ -69,6 +70,8 @@ Zone zone_of(const Outline& outline) {
   Zone zone;
   zone.name = outline.name.substr(0, kMaxTitleBytes);
   while (!is_kept_title(zone.name)) zone.name.pop_back();  // not amidst a character
+  zone.kind = outline.cost == 0 ? Zone::Kind::kNoGo : Zone::Kind::kCostly;
+  zone.cost = outline.cost;
   Prism prism;
   for (int side = 0; side < kSides; ++side) prism.points.push_back(corner(outline, side));
   prism.low = outline.low;
@@ -77,12 +80,12 @@ Zone zone_of(const Outline& outline) {
   return zone;
 }
 
-/// One outline for all that lie in one square of this side.
+/// One outline for all of one cost that lie in one square of this side.
 std::vector<Outline> shared(const std::vector<Outline>& all, double side) {
-  std::map<std::pair<std::int64_t, std::int64_t>, Outline> by_square;
+  std::map<std::array<std::int64_t, 3>, Outline> by_square;
   for (const Outline& one : all) {
     const auto place = [&](double c) { return static_cast<std::int64_t>(std::floor(c / side)); };
-    const auto [it, is_new] = by_square.try_emplace({place(one.middle.x()), place(one.middle.y())}, one);
+    const auto [it, is_new] = by_square.try_emplace({place(one.middle.x()), place(one.middle.y()), one.cost}, one);
     if (!is_new) it->second.add(one);
     if (!is_new && !it->second.name.ends_with("others")) it->second.name += " and others";
   }

@@ -14,12 +14,14 @@ struct KeptClearOf {
   std::string name;                ///< for people: class and number
   std::vector<VoxelIndex> voxels;  ///< of the map, where it shows; not empty
   double margin = 0;               ///< metres, above 0
+  int cost = 0;                    ///< 0: they keep out; else a metre there costs so many more
 };
 
-/// A no-go zone around each thing: all ground within `margin` of its voxels, seen from above, over the heights that it
-/// has. It is the polygon of 32 sides around that, so it fills what the thing is hollow of, and reaches farther
-/// than it should by at most half a percent of the margin and a twentieth of the thing: on the safe side. Over `most`
-/// things, those near to one another share a zone, no fewer than must be.
+/// A no-go or costly zone around each thing: all ground within `margin` of its voxels, seen from above, over the
+/// heights that it has. It is the polygon of 32 sides around that, so it fills what the thing is hollow of, and reaches
+/// farther than it should by at most half a percent of the margin and a twentieth of the thing: on the safe side. Over
+/// `most` things, those near to one another that cost the same share a zone, no fewer than must be. @pre `most` is
+/// above Zone::kMaxCost
 [[nodiscard]] std::vector<Zone> keep_out_zones(std::span<const KeptClearOf> things, double resolution,
                                                std::size_t most = kMaxZones);
 

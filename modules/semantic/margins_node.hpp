@@ -1,17 +1,13 @@
 #pragma once
 
-#include <map>
-#include <string>
-
 #include "bus/list_stream.hpp"
 #include "bus/process.hpp"
-#include "semantic/class_rules.hpp"
 #include "semantic/label_view.hpp"
 
 namespace concord {
 
-/// Says zones around things that robots keep away from (`out/label_zones`): by their classes' margins, in
-/// STATE/classes.yaml, which is looked at each second. The planner takes them as it takes people's no-go zones.
+/// Says zones around things that robots keep away from (`out/label_zones`), as the site file has it for their classes.
+/// The planner takes them as it takes people's zones.
 class MarginsNode {
  public:
   /// Both must outlive this.
@@ -25,13 +21,11 @@ class MarginsNode {
   void begin() { begun_ = true; }
 
  private:
-  void read_rules();
   void tell();
 
   NodeContext context_;
   const Labels& labels_;
   const LabelView& view_;
-  std::map<std::string, ClassRule> rules_;
   ListSender<Zone> list_;
   bool is_stale_ = true;
   bool begun_ = false;

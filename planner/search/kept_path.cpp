@@ -76,8 +76,8 @@ KeptPath::Outcome KeptPath::follow(const Window& window, bool opened) {
   if (!path_) return opened ? plan(start_, goal_) : Outcome::kUnreachable;
   if (!paths_->connected(start_, goal_)) return take(std::nullopt);
   const std::optional<Stretch> stretch = near(window);
-  if (stretch) paths_->clearance().follow(*path_, stretch->first, stretch->last);
   if (!stretch || is_open(window, *stretch)) {
+    if (stretch) paths_->clearance().follow(*path_, stretch->first, stretch->last);
     if (path_->cost <= with_share(cost_)) {
       may_improve_ = may_improve_ || (opened && could_save(window));
       return Outcome::kKept;

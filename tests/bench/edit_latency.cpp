@@ -126,7 +126,10 @@ class Person {
 
   /// Until whoever does it has answered. @throws std::runtime_error if that is no.
   Answer ask(const char* channel, const Bytes& bytes, const std::string& id, double& took) {
-    took = timed(channel, bytes, [&] { return last_.id == id && last_.code != "BUSY"; });
+    do {  // BUSY: it does not know the whole map yet
+      last_ = {};
+      took = timed(channel, bytes, [&] { return last_.id == id; });
+    } while (last_.code == "BUSY");
     if (!last_.ok) throw std::runtime_error(id + ": " + last_.message);
     return last_;
   }
@@ -152,7 +155,9 @@ class Person {
     const auto start = Clock::now();
     lcm_->publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
     while (!happened()) {
-      if (lcm_->handleTimeout(kPatience) <= 0) throw std::runtime_error(std::string("no answer on ") + channel);
+      if (lcm_->handleTimeout(kPatience) <= 0)
+        throw std::runtime_error(std::string("no answer on ") + channel + "; the last: " + last_.id + " " +
+                                 last_.message);
     }
     return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
   }

@@ -30,7 +30,8 @@ class ReplayTest : public testing::Test {
   }
   Replayed replay(const std::vector<LogEvent>& events) { return replay(write(events)); }
   Replayed replay(const std::filesystem::path& log) {
-    auto replayed = replay_lockstep(log, Site{});
+    const Site site;
+    auto replayed = replay_lockstep(log, site);
     EXPECT_TRUE(replayed) << (replayed ? "" : replayed.error().message);
     return replayed ? *replayed : Replayed{};
   }

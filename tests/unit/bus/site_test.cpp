@@ -44,6 +44,8 @@ agents:
   robot1: {kind: lidar, weight: 7, radius: 0.4}
   hmd: {kind: headset}
   unlisted: {kind: guest, weight: 2, radius: 0.2}
+classes:
+  fork lift: {margin: 0.5, cost: 4, cost_margin: 2}
 stream: {bytes_per_second: 1000000}
 ingest: {max_agents: 3, max_known_voxels: 1000}
 merge: {policy: table}
@@ -62,6 +64,9 @@ TEST_F(SiteFile, every_key_is_read) {
   EXPECT_EQ(site.agent("hmd").kind, "headset");
   EXPECT_EQ(site.agent("hmd").weight, 2) << "what an agent leaves out is as for unlisted ones";
   EXPECT_EQ(site.agent("stranger").kind, "guest");
+  EXPECT_EQ(site.classes.at("fork lift").margin, 0.5);
+  EXPECT_EQ(site.classes.at("fork lift").cost, 4);
+  EXPECT_EQ(site.classes.at("fork lift").cost_margin, 2.0);
   EXPECT_EQ(site.stream.bytes_per_second, 1e6);
   EXPECT_EQ(site.ingest.max_agents, 3);
   EXPECT_EQ(site.ingest.max_known_voxels, 1000);
@@ -69,6 +74,20 @@ TEST_F(SiteFile, every_key_is_read) {
   EXPECT_EQ(site.planner.zmin, 0.2);
   EXPECT_EQ(site.planner.zmax, 1.5);
   EXPECT_EQ(site.planner.free_share, 0.25);
+}
+
+TEST_F(SiteFile, terms_of_classes_are_within_bounds_and_whole) {
+  const std::string both = "line 1: classes.glass needs both cost and cost_margin, the latter above margin";
+  EXPECT_EQ(refusal("classes: {glass: {cost: 4}}"), both);
+  EXPECT_EQ(refusal("classes: {glass: {cost_margin: 1}}"), both);
+  EXPECT_EQ(refusal("classes: {glass: {margin: 1, cost: 4, cost_margin: 1}}"), both);
+  EXPECT_EQ(refusal("classes: {glass: {margin: .nan}}"), "line 1: classes.glass.margin must lie between 0 and 10");
+  EXPECT_EQ(refusal("classes: {glass: {cost: 16, cost_margin: 1}}"),
+            "line 1: classes.glass.cost must lie between 0 and 15");
+  EXPECT_EQ(refusal("classes: {a/b: {margin: 1}}"), "line 1: 'a/b' is no name of a class");
+  EXPECT_EQ(refusal("classes: [glass]"), "line 1: classes must hold one entry per class of labels");
+  EXPECT_EQ(refusal("classes: {glass: {margin: 1}, glass: {margin: 2}}"), "line 1: classes.glass is given twice");
+  EXPECT_EQ(refusal("classes: {glass: {margin: 1, cost: 4, cost_margin: 1.1}}"), "accepted");
 }
 
 TEST_F(SiteFile, the_effective_values_are_a_site_file) {

@@ -44,6 +44,22 @@ TEST(KeepOut, ManyThingsShareZonesThatHoldAllOfThem) {
   EXPECT_TRUE(few.front().name.ends_with("others"));
 }
 
+TEST(KeepOut, ZonesThatAreSharedAreOfOneCost) {
+  std::vector<KeptClearOf> things;
+  for (int i = 0; i < 60; ++i) {
+    things.push_back({"box " + std::to_string(i), {{i * 30, i % 7 * 25, 0}}, 0.3, i % 3});
+  }
+  const auto few = keep_out_zones(things, kResolution, Zone::kMaxCost + 1);
+  EXPECT_LE(few.size(), Zone::kMaxCost + 1U);
+  for (const KeptClearOf& thing : things) {
+    const Eigen::Vector3d p = centre_of(thing.voxels[0], kResolution);
+    EXPECT_TRUE(std::ranges::any_of(few, [&](const Zone& zone) {
+      return zone.cost == thing.cost && (zone.kind == Zone::Kind::kCostly) == (thing.cost > 0) &&
+             contains(zone.volume, zone.T_map_zone, p);
+    }));
+  }
+}
+
 TEST(KeepOut, LongNamesAreCutBetweenCharacters) {
   std::string name;
   for (int i = 0; i < 30; ++i) name += "€";
