@@ -9,13 +9,6 @@ namespace {
 
 using State = AlignDesk::Case::State;
 
-constexpr std::size_t kLongestStem = 70;  // of an id of 80 characters
-
-/// Of the placement that founds the map, before the one that the decision asks for.
-std::string founding_id(const std::string& id) {
-  return (id.size() <= kLongestStem ? id : id.substr(id.size() - kLongestStem)) + ".target";
-}
-
 bool has_frame(const AgentLayers& layers, const AlignResult::Used& used) {
   const auto it = layers.find(used.agent);
   return it != layers.end() && it->second.frame_id == used.frame_id;
@@ -111,8 +104,9 @@ void AlignDesk::forget_the_oldest() {
   }
 }
 
-const AlignResult& AlignDesk::offer(const AlignTask& task, AlignResult result) {
+const AlignResult* AlignDesk::offer(const AlignTask& task, AlignResult result) {
   withdraw_offer(task.used_source.agent);
+  if (dropped_.covers(task, result.evidence)) return nullptr;
   Case one;
   one.request.id = result.id;
   one.request.source = task.used_source.agent;
@@ -122,7 +116,7 @@ const AlignResult& AlignDesk::offer(const AlignTask& task, AlignResult result) {
   one.result = std::move(result);
   one.result.open = one.result.evidence.accepted();
   cases_.push_back(std::move(one));
-  return cases_.back().result;
+  return &cases_.back().result;
 }
 
 void AlignDesk::withdraw_offer(const std::string& agent) {
@@ -140,6 +134,7 @@ void AlignDesk::heed(const AgentLayers& layers) {
     if (lies_at({one.asked->agent, one.asked->frame_id, one.asked->T_map_agent}, layers)) agree(one);
   }
   forget_the_oldest();
+  dropped_.heed(layers);
   std::erase_if(cases_, [&](const Case& one) {
     return is_standing_offer(one) &&
            !std::ranges::all_of(one.places, [&](const Place& place) { return lies_at(place, layers); });
@@ -174,22 +169,41 @@ Result<Transform> AlignDesk::T_map_target(const Case& found, const AgentLayers& 
   return refuse(Code::kNotAligned, target + " is in no map itself; align it to the map first");
 }
 
+/// Where the source lies in the map once the target does there. Refused: a product beyond what a transform may be.
+Result<TransformRequest> AlignDesk::placement(const Case& found, const AlignDecision& decision,
+                                              const Transform& T_map_target) {
+  const AlignResult& result = found.result;
+  const Transform T = T_map_target * result.evidence.T_target_source;
+  // As it comes from outside: a product drifts off a rotation, and people may be far away.
+  const auto T_map_source = make_transform(T.translation(), Eigen::Quaterniond(T.linear()).coeffs());
+  if (!T_map_source) return tl::unexpected(T_map_source.error());
+  return TransformRequest{decision.id, decision.author, result.source.agent, result.source.frame_id, *T_map_source};
+}
+
 /// One pair alone founds the map: two that lie in no map would each found it in a frame of its own.
-Result<AlignDesk::Acceptance> AlignDesk::found_map(const Case& found, const AlignDecision& decision, std::int64_t now) {
+Result<AlignDesk::Acceptance> AlignDesk::found_map(Case& found, const AlignDecision& decision) {
   const AlignResult::Used& used = found.result.layers.front();
-  const bool is_founding = founding_ && now - founding_->utime <= kOpenFor && find(founding_->align_id) != nullptr;
-  if (is_founding && (founding_->asked.agent != used.agent || founding_->asked.frame_id != used.frame_id)) {
-    return refuse(Code::kBusy, founding_->asked.agent + " is about to found the map; ask again in a second");
+  if (founding_ && (founding_->is_undone || founding_->align_id != found.request.id)) {
+    return refuse(Code::kBusy, founding_->target.agent + " is about to found the map; ask again in a second");
   }
-  founding_ = {found.request.id,
-               found.result.utime,
-               {founding_id(decision.id), decision.author, used.agent, used.frame_id, Transform::Identity()}};
-  return Acceptance{founding_->asked, true};
+  const auto source = placement(found, decision, Transform::Identity());
+  if (!source) return tl::unexpected(source.error());
+  // Whoever accepts it as well: the target is placed once, the source in the name of the last.
+  if (!founding_) {
+    const Transform T = Transform::Identity();
+    founding_ = MapFounding{found.request.id,
+                            found.result.utime,
+                            {founding_id(decision.id), decision.author, used.agent, used.frame_id, T},
+                            *source,
+                            false};
+  }
+  founding_->source = *source;
+  found.asked = *source;
+  return Acceptance{founding_->target, true};
 }
 
 Result<AlignDesk::Acceptance> AlignDesk::accept(const AlignDecision& decision, const AgentLayers& layers,
                                                 bool is_founded, std::int64_t now) {
-  if (is_founded) founding_.reset();
   Case* found = find(decision.align_id);
   if (found == nullptr || found->state == State::kDropped) return expired(decision.align_id);
   if (found->state != State::kDone) return refuse(Code::kBusy, "it is not found yet; ask again");
@@ -208,20 +222,42 @@ Result<AlignDesk::Acceptance> AlignDesk::accept(const AlignDecision& decision, c
   }
   const auto T_map_target = this->T_map_target(*found, layers);
   if (!T_map_target && T_map_target.error().code == Code::kNotAligned && !is_founded) {
-    return found_map(*found, decision, now);
+    return found_map(*found, decision);
   }
   if (!T_map_target) return tl::unexpected(T_map_target.error());
-  const Transform T = *T_map_target * result.evidence.T_target_source;
-  // As it comes from outside: a product drifts off a rotation, and people may be far away.
-  const auto T_map_source = make_transform(T.translation(), Eigen::Quaterniond(T.linear()).coeffs());
-  if (!T_map_source) return tl::unexpected(T_map_source.error());
-  found->asked =
-      TransformRequest{decision.id, decision.author, result.source.agent, result.source.frame_id, *T_map_source};
+  auto asked = placement(*found, decision, *T_map_target);
+  if (!asked) return tl::unexpected(asked.error());
+  found->asked = std::move(*asked);
+  if (founding_ && founding_->align_id == decision.align_id) founding_->source = *found->asked;
   return Acceptance{*found->asked, false};
 }
 
+void AlignDesk::resume(MapFounding founding) {
+  assert(!founding_);
+  founding_ = std::move(founding);
+}
+
+FoundingStep AlignDesk::go_on_founding(const AgentLayers& layers, bool is_founded, std::int64_t now) {
+  if (!founding_) return FoundingStep::kOver;
+  const FoundingStep step = next_step(*founding_, layers, is_founded, now, kOpenFor);
+  if (step == FoundingStep::kTakeBack) founding_->is_undone = true;
+  if (step == FoundingStep::kOver) founding_.reset();
+  return step;
+}
+
+/// Of the two halves, and of taking the first one back.
+void AlignDesk::hear_founding(const std::string& id, bool ok) {
+  if (!founding_) return;
+  const bool is_source = founding_->source.id == id;
+  if ((!ok && founding_->target.id == id) || (ok && is_source) || founding_->taking_back_id() == id) {
+    founding_.reset();
+  } else if (is_source) {
+    founding_->is_undone = true;
+  }
+}
+
 void AlignDesk::on_merge(const std::string& id, bool ok) {
-  if (!ok && founding_ && founding_->asked.id == id) founding_.reset();
+  hear_founding(id, ok);
   for (Case& one : cases_) {
     if (!one.asked || one.asked->id != id || one.accepted) continue;
     ok ? agree(one) : one.asked.reset();
@@ -231,14 +267,17 @@ void AlignDesk::on_merge(const std::string& id, bool ok) {
 
 Result<void> AlignDesk::drop(const AlignDecision& decision) {
   Case* found = find(decision.align_id);
+  if (found == nullptr && dropped_.contains(decision.align_id)) return {};
   if (found == nullptr) return expired(decision.align_id);
   if (found->accepted) {
     return refuse(Code::kConflict, "it was accepted; take it back with: concord undo " + found->asked->id);
   }
   if (found->is_offer) {
+    dropped_.add(decision.align_id, found->places.back(), found->result.evidence);
     std::erase_if(cases_, [&](const Case& one) { return one.request.id == decision.align_id; });
     return {};
   }
+  if (founding_ && founding_->align_id == decision.align_id) founding_->is_undone = true;
   // It is kept: whoever asked does so again until there is an answer.
   found->state = State::kDropped;
   found->result = {};

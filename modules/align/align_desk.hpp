@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "align/align_task.hpp"
+#include "align/dropped_offers.hpp"
+#include "align/map_founding.hpp"
 #include "core/alignment.hpp"
 #include "core/error.hpp"
 
@@ -46,8 +48,9 @@ class AlignDesk {
   /// The one that runs cannot be carried out, and is forgotten. False: it was dropped meanwhile.
   bool give_up(const std::string& id);
 
-  /// The watch found that an agent slipped, or contradicts the others: takes the place of what it said before.
-  const AlignResult& offer(const AlignTask& task, AlignResult result);
+  /// The watch found that an agent slipped, or contradicts the others: takes the place of what it said before. Null:
+  /// people have dropped as good as that (see DroppedOffers), and nothing is said of the agent.
+  const AlignResult* offer(const AlignTask& task, AlignResult result);
   /// The agent lies right.
   void withdraw_offer(const std::string& agent);
   /// Withdraws what is said of agents that lie elsewhere now, or among others that do; and takes what shows in the map
@@ -69,6 +72,12 @@ class AlignDesk {
   };
   [[nodiscard]] Result<Acceptance> accept(const AlignDecision& decision, const AgentLayers& layers, bool is_founded,
                                           std::int64_t now);
+  /// The pair that is about to found the map: to be kept over a restart, before merge is asked.
+  [[nodiscard]] const std::optional<MapFounding>& founding() const { return founding_; }
+  /// As it was kept. @pre none is under way.
+  void resume(MapFounding founding);
+  /// What merge is to be asked next, to bring it to an end; kOver: nothing, and it is forgotten.
+  [[nodiscard]] FoundingStep go_on_founding(const AgentLayers& layers, bool is_founded, std::int64_t now);
   /// What merge said to what it was asked by this id.
   void on_merge(const std::string& id, bool ok);
   /// Again by whoever has not heard of it. Refused (kExpired): nothing of that id is kept; (kConflict): it was
@@ -84,17 +93,14 @@ class AlignDesk {
   [[nodiscard]] Case* find(const std::string& id);
   [[nodiscard]] Result<Transform> T_map_target(const Case& found, const AgentLayers& layers) const;
   [[nodiscard]] bool may_hold(const Case& found, const AgentLayers& layers) const;
-  [[nodiscard]] Result<Acceptance> found_map(const Case& found, const AlignDecision& decision, std::int64_t now);
+  [[nodiscard]] static Result<TransformRequest> placement(const Case& found, const AlignDecision& decision,
+                                                          const Transform& T_map_target);
+  void hear_founding(const std::string& id, bool ok);
+  [[nodiscard]] Result<Acceptance> found_map(Case& found, const AlignDecision& decision);
   void forget_the_oldest();
 
-  /// Who was to found the map, by accepting what.
-  struct Founding {
-    std::string align_id;
-    std::int64_t utime = 0;  ///< when that was found
-    TransformRequest asked;
-  };
-
-  std::optional<Founding> founding_;
+  std::optional<MapFounding> founding_;
+  DroppedOffers dropped_;
   std::deque<Case> cases_;  ///< in the order in which they were asked
 };
 

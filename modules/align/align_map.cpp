@@ -5,6 +5,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "align/workers.hpp"
+
 namespace concord {
 namespace {
 
@@ -73,7 +75,9 @@ Eigen::Matrix3d upright(const SurfaceLevel& surface) {
     const double gate = std::sin(degrees * M_PI / 180.0);
     Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
     double count = 0.0;
+    StopLook stop;
     for (const SurfaceCell& cell : surface.cells()) {
+      stop.step();
       if (!cell.is_flat()) continue;
       const Eigen::Vector3d n = cell.normal.cast<double>();
       const double along = n.dot(up);

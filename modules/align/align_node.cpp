@@ -66,7 +66,8 @@ AlignNode::AlignNode(const NodeContext& context, std::launch how, Compute comput
       compute_(std::move(compute)),
       site_{context.site.resolution, context.site.merge.policy},
       replies_(context),
-      layers_(context) {
+      layers_(context),
+      founding_(context_, desk_, layers_) {
   listen<AlignRequest>(context_.bus, context_.counters, context_.process, kRequests,
                        [this](const std::string&, AlignRequest request) { on_request(std::move(request)); });
   listen<AlignDecision>(context_.bus, context_.counters, context_.process, kDecisions,
@@ -88,6 +89,7 @@ void AlignNode::repeat() {
   const std::int64_t now = context_.bus.now();
   const AgentLayers& layers = layers_.now();
   desk_.heed(layers);
+  founding_.go_on();
   for (const std::string& agent : desk_.expire_offers(now)) watch_.forget(agent);
   for (const AlignResult* result : desk_.standing(layers, now)) say(*result);
   count();
@@ -145,6 +147,8 @@ void AlignNode::on_decision(const AlignDecision& decision) {
   }
   const auto accepted = desk_.accept(decision, layers_.now(), *is_founded, context_.bus.now());
   if (!accepted) return replies_.deny(kDecisions, decision.id, accepted.error());
+  // What is not written down could stay half done.
+  if (const auto kept = founding_.keep(); !kept) return replies_.deny(kDecisions, decision.id, kept.error());
   // Merge answers by the decision's own id, to who decided; asked again it answers again.
   context_.bus.publish("in/transform", encode(accepted->request, context_.bus.now()));
   if (accepted->is_founding) {
@@ -248,8 +252,11 @@ void AlignNode::finish_watch(const AlignTask& task, const Found& found) {
   } else {
     return desk_.withdraw_offer(agent);
   }
-  if (!desk_.has_offer(agent)) spdlog::warn("{}", result.evidence.message);
-  say(desk_.offer(task, std::move(result)));
+  const bool is_news = !desk_.has_offer(agent);
+  if (const AlignResult* offered = desk_.offer(task, std::move(result))) {
+    if (is_news) spdlog::warn("{}", offered->evidence.message);
+    say(*offered);
+  }
   count();
 }
 

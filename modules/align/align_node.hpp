@@ -10,6 +10,7 @@
 
 #include "align/align_desk.hpp"
 #include "align/drift_watch.hpp"
+#include "align/founding_node.hpp"
 #include "bus/layers_node.hpp"
 #include "bus/process.hpp"
 #include "bus/replies.hpp"
@@ -64,6 +65,7 @@ class AlignNode {
   Replies replies_;
   LayersNode layers_;
   AlignDesk desk_;
+  FoundingNode founding_;
   DriftWatch watch_;
   std::optional<Running> running_;
 };

@@ -79,7 +79,8 @@ Result<AlignMap> prepared_target(const AlignTask& task, int threads) {
   }
   std::vector<Layer> layers;
   for (const AlignTask::Part& part : task.target) layers.push_back({&part.map, part.T_target_part, part.weight});
-  const MergedMap merged = compose(layers, {}, task.site.policy, task.site.resolution, threads);
+  const MergedMap merged = compose(layers, {}, task.site.policy, task.site.resolution, threads, stop_in_scope());
+  look_for_stop();
   return prepare_map(merged.values, task.site.resolution, threads);
 }
 

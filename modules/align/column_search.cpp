@@ -131,6 +131,7 @@ class Search {
     if (yaws_.size() * columns_.size() > kMaxTurned) return false;
     turned_.resize(yaws_.size() * columns_.size());
     for (std::size_t i = 0; i < yaws_.size(); ++i) {
+      look_for_stop();
       const Eigen::Rotation2Dd R(yaws_[i]);
       for (std::size_t c = 0; c < columns_.size(); ++c) {
         const Eigen::Vector2d p = (R * columns_[c].p / cell_).array().floor();
@@ -157,6 +158,7 @@ class Search {
   std::size_t count_seeds() const {
     std::size_t count = 0;
     for (std::size_t yaw = 0; yaw < yaws_.size() && count <= kMaxSeeds; ++yaw) {
+      look_for_stop();
       for (const auto& [low, high] : windows(yaw)) {
         const auto side = [&](int axis) {
           return static_cast<std::size_t>((high[axis] >> kTop) - (low[axis] >> kTop) + 1);
@@ -215,7 +217,9 @@ class Search {
           for (int x = low.x() >> kTop; x <= high.x() >> kTop; ++x) corners.emplace(y, x);
         }
       }
+      StopLook stop;
       for (const auto& [y, x] : corners) {
+        stop.step();
         const Node node{bound(static_cast<int>(yaw), kTop, x << kTop, y << kTop), kTop, static_cast<int>(yaw),
                         x << kTop, y << kTop};
         if (node.bound > 0) seeds[yaw].push_back(node);
@@ -240,9 +244,11 @@ class Search {
   std::vector<PlanarPose> open_best_first() {
     std::vector<Node> taken;
     std::size_t opened = 0;
+    StopLook stop;
     while (!open_.empty() && taken.size() < scale_.most && opened < kMaxNodes) {
       std::vector<Node> batch;
       while (!open_.empty() && batch.size() < kBatch && taken.size() < scale_.most) {
+        stop.step();
         const Node node = open_.top();
         // A place is taken in order: not while a better one may come out of this batch.
         if (node.level == 0 && !batch.empty()) break;

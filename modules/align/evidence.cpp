@@ -71,7 +71,9 @@ void ask_each(const AlignMap& map, const SurfaceLevel& other, const Transform& T
   const double area =
       other.size() * other.size() * static_cast<double>(other.cells().size()) / static_cast<double>(count);
   const double size = std::max(map.fine().size(), other.size());
+  StopLook stop;
   for (std::size_t i = begin; i < end; ++i) {
+    stop.step();
     const SurfaceCell& piece = other.cells()[spread(i, count, other.cells().size())];
     if (!piece.is_flat() && !piece.is_solid) continue;
     const Eigen::Vector3d n_target = R_target_other * piece.normal.cast<double>();

@@ -42,7 +42,9 @@ std::uint64_t free_blocks(const Brick& brick) {
 /// Every cell of a surface and those around it: outside of these `nearest` finds nothing.
 BlockSet surroundings(const SurfaceLevel& surface) {
   BlockSet out;
+  StopLook stop;
   for (const SurfaceCell& cell : surface.cells()) {
+    stop.step();
     const VoxelIndex at = cell_of(cell.mean.cast<double>(), 1.0 / surface.size());
     for (int step = 0; step < 27; ++step)
       out.insert({at.x + step % 3 - 1, at.y + step / 3 % 3 - 1, at.z + step / 9 - 1});
@@ -103,7 +105,9 @@ ObservedFreeSpace ObservedFreeSpace::known(const BrickMap& map, double resolutio
   ObservedFreeSpace out;
   out.block_ = 2.0 * resolution;
   out.per_metre_ = 1.0 / out.block_;
+  StopLook stop;
   for (const BrickIndex index : map.sorted_bricks()) {
+    stop.step();
     const std::uint64_t blocks = free_blocks(*map.find(index));
     if (blocks == 0) continue;
     out.blocks_.insert_brick({index.x, index.y, index.z}, blocks);
@@ -132,6 +136,7 @@ ObservedFreeSpace ObservedFreeSpace::implied(const SurfaceLevel& surface, int th
     }
   });
   for (const std::vector<VoxelIndex>& part : parts) {
+    look_for_stop();
     for (const VoxelIndex& b : part) out.blocks_.insert(b);
   }
   return out;
@@ -141,7 +146,9 @@ ObservedFreeSpace ObservedFreeSpace::mirrored() const {
   ObservedFreeSpace out;
   out.block_ = block_;
   out.per_metre_ = per_metre_;
+  StopLook stop;
   for (std::size_t i = 0; i < blocks_.words().size(); ++i) {
+    stop.step();
     const std::uint64_t word = blocks_.words()[i];
     const std::uint64_t pairs = (word & 0x5555555555555555ULL) << 1 | (word >> 1 & 0x5555555555555555ULL);
     const std::uint64_t cells = (pairs & 0x3333333333333333ULL) << 2 | (pairs >> 2 & 0x3333333333333333ULL);
@@ -161,7 +168,9 @@ std::size_t ObservedFreeSpace::block_count() const {
 
 std::vector<FreeColumn> ObservedFreeSpace::columns() const {
   std::vector<FreeColumn> out;
+  StopLook stop;
   for (std::size_t i = 0; i < blocks_.words().size(); ++i) {
+    stop.step();
     const VoxelIndex at = blocks_.bricks()[i];
     for (int column = 0; column < 16; ++column) {
       const int count = std::popcount(blocks_.words()[i] >> column & 0x0001000100010001ULL);

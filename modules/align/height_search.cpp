@@ -5,6 +5,7 @@
 #include <map>
 
 #include "align/sampling.hpp"
+#include "align/workers.hpp"
 
 namespace concord {
 namespace {
@@ -26,7 +27,9 @@ struct Pieces {
 Pieces pieces_of(const AlignMap& map, const Eigen::Matrix3d& R) {
   Pieces out;
   const SurfaceLevel& surface = map.levels[std::min<std::size_t>(1, map.levels.size() - 1)];
+  StopLook stop;
   for (const SurfaceCell& cell : surface.cells()) {
+    stop.step();
     const Eigen::Vector3d p = R * cell.mean.cast<double>();
     out.any.push_back(p);
     const double z = (R * cell.normal.cast<double>()).z();
@@ -42,7 +45,9 @@ void vote(const std::vector<Eigen::Vector3d>& target, const std::vector<Eigen::V
           double low, double high, Votes& votes) {
   CellTable table;
   std::vector<std::vector<float>> heights;
+  StopLook stop;
   for (const Eigen::Vector3d& p : target) {
+    stop.step();
     VoxelIndex at = voxel_of(p, kColumn);
     at.z = 0;
     const auto column = static_cast<std::size_t>(table.insert(at));
@@ -51,6 +56,7 @@ void vote(const std::vector<Eigen::Vector3d>& target, const std::vector<Eigen::V
   }
   const std::size_t take = std::min(source.size(), kMaxPieces);
   for (std::size_t i = 0; i < take; ++i) {
+    stop.step();
     const Eigen::Vector3d p = T * source[spread(i, take, source.size())];
     VoxelIndex at = voxel_of(p, kColumn);
     at.z = 0;

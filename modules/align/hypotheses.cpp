@@ -7,6 +7,7 @@
 #include "align/gates.hpp"
 #include "align/height_search.hpp"
 #include "align/sampling.hpp"
+#include "align/workers.hpp"
 
 namespace concord {
 namespace {
@@ -49,7 +50,9 @@ std::size_t flat_count(const SurfaceLevel& level) {
 std::vector<SurfaceCell> cropped(const AlignMap& target, const SurfaceLevel& source, const Transform& T,
                                  std::size_t most) {
   std::vector<SurfaceCell> near;
+  StopLook stop;
   for (const SurfaceCell& cell : source.cells()) {
+    stop.step();
     if (target.levels.back().nearest(T * cell.mean.cast<double>()) != nullptr) near.push_back(cell);
   }
   if (near.size() <= most) return near;
@@ -243,7 +246,9 @@ GicpResult refine_finely(const AlignMap& target, const AlignMap& source, const T
   refine_level(target, to, from, kFinePoints, kFineIterations, threads, result);
   std::vector<SurfaceCell> points;
   const std::size_t take = std::min(source.points.size(), kLastPoints);
+  StopLook stop;
   for (std::size_t i = 0; i < take; ++i) {
+    stop.step();
     const Eigen::Vector3f& p = source.points[spread(i, take, source.points.size())];
     const SurfaceCell* cell = from.nearest(p.cast<double>());
     if (cell == nullptr || (!cell->is_flat() && !cell->is_solid)) continue;

@@ -6,6 +6,8 @@
 #include <map>
 #include <utility>
 
+#include "align/workers.hpp"
+
 namespace concord {
 namespace {
 
@@ -20,6 +22,7 @@ Eigen::Vector2d worst_disc(const std::vector<PieceAgainst>& pieces, double radiu
   std::map<std::pair<int, int>, double> against;  // around each middle
   const int reach = static_cast<int>(std::ceil(radius / kStep));
   for (const PieceAgainst& piece : pieces) {
+    look_for_stop();
     const int x = static_cast<int>(std::floor(piece.p_target.x() / kStep));
     const int y = static_cast<int>(std::floor(piece.p_target.y() / kStep));
     for (int i = x - reach; i <= x + reach; ++i) {

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "align/cloud.hpp"
+#include "align/workers.hpp"
 #include "core/resample.hpp"
 
 namespace concord {
@@ -19,7 +20,8 @@ Result<AlignMap> prepare_map(const BrickMap& map, double resolution, int threads
   for (const double coarser : kAlignResolutions) {
     if (out || !wants_coarser(out.error())) break;
     if (coarser <= resolution) continue;
-    const auto coarse = resample(map, resolution, coarser, kMaxBricks);
+    const auto coarse = resample(map, resolution, coarser, kMaxBricks, stop_in_scope());
+    look_for_stop();
     if (!coarse) return tl::unexpected(coarse.error());
     out = make_align_map(*coarse, coarser, threads);
   }

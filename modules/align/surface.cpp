@@ -56,7 +56,9 @@ bool are_scattered(std::span<const Eigen::Vector3f> points, double resolution) {
   constexpr std::int64_t kHalf = 1 << 20;  // 10 km in blocks of 4 cm are a quarter of that
   std::vector<std::uint64_t> blocks;
   blocks.reserve(points.size());
+  StopLook stop;
   for (const Eigen::Vector3f& p : points) {
+    stop.step();
     const VoxelIndex at = cell_of(p.cast<double>(), per_metre);
     blocks.push_back(static_cast<std::uint64_t>(at.x + kHalf) << 42 | static_cast<std::uint64_t>(at.y + kHalf) << 21 |
                      static_cast<std::uint64_t>(at.z + kHalf));
@@ -67,7 +69,11 @@ bool are_scattered(std::span<const Eigen::Vector3f> points, double resolution) {
 
 SurfacePoints without_loners(SurfacePoints points, double resolution, int threads) {
   CellTable voxels;
-  for (const Eigen::Vector3f& p : points) voxels.insert(cell_of(p.cast<double>(), 1.0 / resolution));
+  StopLook stop;
+  for (const Eigen::Vector3f& p : points) {
+    stop.step();
+    voxels.insert(cell_of(p.cast<double>(), 1.0 / resolution));
+  }
   std::vector<std::int8_t> crowd(points.size());
   for_each_chunk(threads, chunks_of(points.size(), kPointsPerChunk), [&](std::size_t chunk) {
     CellTable::Cursor cursor(voxels);
@@ -97,7 +103,9 @@ Result<SurfacePoints> surface_points(const BrickMap& map, double resolution) {
                                             " m or coarser, this one has " + std::to_string(resolution));
   }
   SurfacePoints points;
+  StopLook stop;
   for (const BrickIndex b : map.sorted_bricks()) {
+    stop.step();
     const VoxelMask mask = map.find(b)->occupied();
     if (mask == VoxelMask{}) continue;
     const Around around{occupied_at(map, {b.x - 1, b.y, b.z}), occupied_at(map, {b.x + 1, b.y, b.z}),
@@ -122,7 +130,9 @@ Result<SurfacePoints> surface_points(std::span<const Eigen::Vector3f> cloud) {
   if (cloud.size() > kMaxSurfacePoints) {
     return refuse(Code::kTooLarge, "over 4 million points; downsample the cloud");
   }
+  StopLook stop;
   for (const Eigen::Vector3f& p : cloud) {
+    stop.step();
     if (!p.allFinite()) return refuse(Code::kNotFinite, "a point is not finite");
     if (p.cwiseAbs().maxCoeff() > kMaxSurfaceReach) return refuse_reach();
   }

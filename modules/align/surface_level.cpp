@@ -66,7 +66,9 @@ void Moments::add(const Moments& other) {
 
 SurfaceLevel::SurfaceLevel(std::span<const Eigen::Vector3f> points, double size, int threads)
     : size_(size), per_metre_(1.0 / size) {
+  StopLook stop;
   for (const Eigen::Vector3f& point : points) {
+    stop.step();
     const Eigen::Vector3d p = point.cast<double>();
     const auto cell = static_cast<std::size_t>(table_.insert(cell_of(p, per_metre_)));
     if (cell == moments_.size()) moments_.emplace_back();
@@ -76,7 +78,9 @@ SurfaceLevel::SurfaceLevel(std::span<const Eigen::Vector3f> points, double size,
 }
 
 SurfaceLevel::SurfaceLevel(const SurfaceLevel& finer, double size, int threads) : size_(size), per_metre_(1.0 / size) {
+  StopLook stop;
   for (const Moments& moments : finer.moments_) {
+    stop.step();
     const auto cell = static_cast<std::size_t>(table_.insert(cell_of(moments.sum / moments.count, per_metre_)));
     if (cell == moments_.size()) moments_.emplace_back();
     moments_[cell].add(moments);
@@ -110,7 +114,9 @@ SurfacePoints SurfaceLevel::without_strays(const SurfacePoints& points, int thre
   });
   SurfacePoints out;
   CellTable::Cursor cursor(table_);
+  StopLook stop;
   for (const Eigen::Vector3f& point : points) {
+    stop.step();
     const Eigen::Vector3d p = point.cast<double>();
     const int cell = cursor.find(cell_of(p, per_metre_));
     const Eigen::Vector3d n = cells_[cell].normal.cast<double>();
@@ -157,7 +163,9 @@ void SurfaceLevel::find_solids(const std::vector<char>& crowded) {
 }
 
 void SurfaceLevel::orient(const std::function<bool(const Eigen::Vector3d&)>& is_free) {
+  StopLook stop;
   for (SurfaceCell& cell : cells_) {
+    stop.step();
     if (!cell.is_flat()) continue;
     const auto is_open = [&](double side) {
       const Eigen::Vector3d step = side * size_ * cell.normal.cast<double>();

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "align/workers.hpp"
+
 namespace concord {
 namespace {
 
@@ -50,7 +52,9 @@ std::vector<WallColumn> wall_columns(const AlignMap& map, const Eigen::Matrix3d&
   };
   std::map<Cell, Sum> sums;
   const double area = map.fine().size() * map.fine().size();
+  StopLook stop;
   for (const SurfaceCell& piece : map.fine().cells()) {
+    stop.step();
     const bool flat = piece.is_flat();
     if (flat && std::abs((R_upright_map * piece.normal.cast<double>()).z()) > kLevelNormalZ) continue;
     const Eigen::Vector3d p = R_upright_map * piece.mean.cast<double>();
@@ -109,13 +113,16 @@ WallGrid::WallGrid(const AlignMap& map, const Eigen::Matrix3d& R_upright_map, do
     return (c.array() >= 0).all() && (c.array() < size_.array()).all();
   };
   const auto index = [&](const Eigen::Vector2i& c) { return static_cast<std::size_t>(c.y()) * size_.x() + c.x(); };
+  StopLook stop;
   for (const FreeColumn& column : map.free.columns()) {
+    stop.step();
     const Eigen::Vector3d p = R_upright_map * column.p.cast<double>();
     const Eigen::Vector2i c = at(p.head<2>().cast<float>()) - origin_;
     if (inside(c)) open[index(c)] += column.height * std::min(1.0F, column.area / static_cast<float>(cell * cell));
   }
   for (std::size_t i = 0; i < image.size(); ++i) image[i] = open[i] > kMinOpenHeight ? kOpen : 0;
   for (const WallColumn& wall : walls) {
+    stop.step();
     const Eigen::Vector2i c = at(wall.p) - origin_;
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
@@ -139,6 +146,7 @@ void WallGrid::make_levels() {
     std::vector<std::int8_t>& out = levels_[level];
     out.resize(static_cast<std::size_t>(width) * height);
     for (int row = 0; row < height; ++row) {
+      look_for_stop();
       for (int column = 0; column < width; ++column) {
         const int x = column - reach + origin_.x();
         const int y = row - reach + origin_.y();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <exception>
 #include <functional>
 #include <stop_token>
@@ -22,8 +23,9 @@ class Stopped : public std::exception {
   [[nodiscard]] const char* what() const noexcept override { return "nobody waits for it any longer"; }
 };
 
-/// While it lives, for_each_chunk on this thread throws Stopped before the next chunk once a stop is asked for. All
-/// long loops of alignment go through that, so none of them need know of it, and there is no half an answer.
+/// While it lives, for_each_chunk on this thread throws Stopped before the next chunk once a stop is asked for, and so
+/// does look_for_stop, here and in the chunks. All long loops of alignment go through one of the two, so whoever calls
+/// them need not know of it, and there is no half an answer.
 class StopScope {
  public:
   explicit StopScope(std::stop_token stop);
@@ -35,5 +37,22 @@ class StopScope {
   std::stop_token stop_;
   const std::stop_token* outer_;
 };
+
+/// For a loop outside of for_each_chunk, or a long one within a chunk. @throws Stopped.
+void look_for_stop();
+
+/// The same for a loop of many short steps: it looks at the first one, and then at each 1024th.
+class StopLook {
+ public:
+  void step() {
+    if ((steps_++ & 1023U) == 0) look_for_stop();
+  }
+
+ private:
+  std::uint32_t steps_ = 0;
+};
+
+/// What this thread is to heed: for loops elsewhere, which know of nothing but tokens.
+[[nodiscard]] std::stop_token stop_in_scope();
 
 }  // namespace concord

@@ -1,5 +1,6 @@
 // Where one map lies in another: of two files, or of what the running stack holds.
 
+#include <filesystem>
 #include <memory>
 
 #include "cli/align_files.hpp"
@@ -18,7 +19,16 @@ struct Decision {
   std::string op, align_id, author, id;
 };
 
+/// What is sure to fail is said before minutes are spent. Refused (kNotFound).
+Result<void> check_picture(const std::filesystem::path& picture) {
+  const std::filesystem::path folder = picture.parent_path();
+  std::error_code error;
+  if (folder.empty() || std::filesystem::is_directory(folder, error)) return {};
+  return refuse(Code::kNotFound, folder.string() + ": there is no such folder to write the picture into");
+}
+
 Outcome run_align(const Options& options, const Common& common) {
+  if (const auto can = check_picture(options.picture); !can) return fail(can.error());
   std::optional<Transform> guess;
   if (!options.guess.empty()) {
     const auto T = parse_transform(options.guess);

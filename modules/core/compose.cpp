@@ -215,14 +215,15 @@ bool apply(FoldedBrick folded, MergedMap& map) {
   return map.values.set(folded.index, std::move(folded.values)) || conflicts_changed;
 }
 
-MergedMap compose(std::span<const Layer> layers, const PinMap& pins, Policy policy, double resolution, int threads) {
+MergedMap compose(std::span<const Layer> layers, const PinMap& pins, Policy policy, double resolution, int threads,
+                  const std::stop_token& stop) {
   const Plan plan(layers, pins, policy, resolution);
   const std::vector<BrickSet::Entry> tiles = touched_tiles(plan);
   std::vector<std::vector<FoldedTile>> parts(std::max(threads, 1));
   in_parts(tiles.size(), static_cast<int>(parts.size()), [&](std::size_t first, std::size_t last, int part) {
     std::vector<Brick> values;
     std::vector<Brick> conflicts;
-    for (std::size_t i = first; i < last; ++i) {
+    for (std::size_t i = first; i < last && !stop.stop_requested(); ++i) {
       parts[part].push_back(fold_tile(plan, tiles[i], values, conflicts));
     }
   });

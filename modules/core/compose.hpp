@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "core/brick_map.hpp"
@@ -44,8 +45,9 @@ struct MergedMap {
 /// Puts a folded brick into the map. Returns whether the map changed.
 bool apply(FoldedBrick folded, MergedMap& map);
 
-/// The merged map of these layers and pins: what folding all bricks that any of them touches leads to.
+/// The merged map of these layers and pins: what folding all bricks that any of them touches leads to. Once a stop is
+/// asked for it ends before the next tile, and what it returns is of no use.
 [[nodiscard]] MergedMap compose(std::span<const Layer> layers, const PinMap& pins, Policy policy, double resolution,
-                                int threads = 1);
+                                int threads = 1, const std::stop_token& stop = {});
 
 }  // namespace concord

@@ -174,7 +174,8 @@ class Resampler {
 
 bool same_resolution(double a, double b) { return std::abs(a - b) <= kSameResolution * std::max(a, b); }
 
-Result<BrickMap> resample(const BrickMap& map, double source, double target, std::uint64_t max_bricks) {
+Result<BrickMap> resample(const BrickMap& map, double source, double target, std::uint64_t max_bricks,
+                          const std::stop_token& stop) {
   assert(source > 0 && target > 0);
   const auto too_large = [&] {
     return refuse(Code::kTooLarge, "map at " + std::to_string(target) + " m has more than " +
@@ -192,7 +193,10 @@ Result<BrickMap> resample(const BrickMap& map, double source, double target, std
   const std::vector<BrickIndex> targets = resampler.targets();
   if (targets.size() > max_bricks) return too_large();
   BrickMap result;
-  for (const BrickIndex index : targets) result.set(index, resampler.make(index));
+  for (const BrickIndex index : targets) {
+    if (stop.stop_requested()) break;
+    result.set(index, resampler.make(index));
+  }
   return result;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <stop_token>
 
 #include "core/brick_map.hpp"
 #include "core/error.hpp"
@@ -16,6 +17,8 @@ inline constexpr double kSameResolution = 1e-5;
 /// To a coarser one: a voxel has the largest value among the known source voxels whose centres it holds.
 /// To a finer one: a voxel has the value of the source voxel that holds its centre.
 /// Refused: more than `max_bricks` bricks (kTooLarge, before they are made), indices out of bounds (kOutOfBounds).
-[[nodiscard]] Result<BrickMap> resample(const BrickMap& map, double source, double target, std::uint64_t max_bricks);
+/// Once a stop is asked for it ends before the next brick, and what it returns is of no use.
+[[nodiscard]] Result<BrickMap> resample(const BrickMap& map, double source, double target, std::uint64_t max_bricks,
+                                        const std::stop_token& stop = {});
 
 }  // namespace concord

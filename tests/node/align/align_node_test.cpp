@@ -99,9 +99,9 @@ TEST_F(AlignStation, TheFirstPairFoundsTheMapInTheTargetsFrame) {
   run();
   answer = accept("d", "a");
   EXPECT_TRUE(answer.ok);
-  ASSERT_EQ(placements_.size(), 2U);
-  EXPECT_EQ(placements_[1].agent, "robot2");
-  EXPECT_LT(metres_off(placements_[1].T_map_agent, kT_left_right), kNear);
+  ASSERT_GE(placements_.size(), 2U);
+  EXPECT_EQ(placements_.back().agent, "robot2");
+  EXPECT_LT(metres_off(placements_.back().T_map_agent, kT_left_right), kNear);
 }
 
 TEST_F(AlignStation, OnePairAloneFoundsTheMap) {

@@ -110,6 +110,16 @@ TEST_F(DriftStation, AnOfferIsFoundAnewWhenItExpires) {
   EXPECT_TRUE(accept("d", after.back().id).ok);
 }
 
+TEST_F(DriftStation, WhatWasDroppedDoesNotComeBackWhenTheAgentMovesOn) {
+  align_by_hand("robot2", transform(0.2, -0.15, 0.0, degrees(1.5)) * kT_left_right);
+  for (const AlignResult& one : said()) decide("drop-" + one.id, AlignDecision::Op::kDrop, one.id);
+  EXPECT_TRUE(said().empty()) << "not dropped";
+  const std::int64_t looks = counters_.all().at("looks");
+  map_on("robot2");
+  EXPECT_TRUE(said().empty());
+  EXPECT_GT(counters_.all().at("looks"), looks) << "nobody was looked at";
+}
+
 TEST_F(DriftStation, LooksAreBoundedAndOnlyAtWhoSentSomething) {
   align_by_hand("robot2", kT_left_right);
   run(60'000'000);

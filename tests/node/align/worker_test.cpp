@@ -1,3 +1,4 @@
+#include <atomic>
 #include <future>
 #include <new>
 #include <thread>
@@ -88,6 +89,45 @@ TEST_F(BesideStation, TheProcessEndsWhileItComputes) {
   EXPECT_EQ(ended_.get_future().get(), "a");
 }
 
+/// A look that goes on until it is told to stop, beside the bus.
+class LookingStation : public AlignStation {
+ protected:
+  LookingStation()
+      : AlignStation(std::launch::async, [this](const AlignTask& task, int threads, std::stop_token stop) {
+          if (!task.is_recheck || has_looked_.exchange(true)) return carry_out(task, threads, std::move(stop));
+          begun_.set_value();
+          std::promise<void> asked;
+          const std::stop_callback on_stop(stop, [&] { asked.set_value(); });
+          asked.get_future().wait();
+          ended_.set_value();
+          return Result<Alignment>(refuse(Code::kExpired, "stopped"));
+        }) {
+    send("robot1", left_part());
+    send("robot2", right_part());
+    align_by_hand("robot1", kT_map_left);
+    align_by_hand("robot2", kT_map_left * kT_left_right);
+    run(10'000'000);
+    begun_.get_future().wait();
+  }
+  std::atomic<bool> has_looked_ = false;
+  std::promise<void> begun_;
+  std::promise<void> ended_;
+};
+
+TEST_F(LookingStation, IsStoppedWhenAPersonAsks) {
+  EXPECT_EQ(request(guess_of("a", "robot2", "", kT_map_left * kT_left_right)).code, "BUSY");
+  ended_.get_future().get();  // else it waits here for ever
+  EXPECT_EQ(counters_.get("looks"), 0) << "what was stopped counts as a look";
+  Answer answer;
+  while (answer.code.empty() || answer.code == "BUSY") {
+    run(100'000);
+    answer = request(guess_of("a", "robot2", "", kT_map_left * kT_left_right));
+    std::this_thread::yield();
+  }
+  EXPECT_EQ(answer.id, "a");
+  EXPECT_TRUE(answer.ok) << answer.message;
+}
+
 /// Somebody moves the agent while it is looked at.
 class MovingStation : public AlignStation {
  protected:
@@ -97,7 +137,7 @@ class MovingStation : public AlignStation {
           if (task.is_recheck && is_to_move_) {
             is_to_move_ = false;
             set_place("robot2", kT_left_right);
-            bus_.deliver();
+            bus_->deliver();
           }
           return found;
         }) {

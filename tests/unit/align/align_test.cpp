@@ -184,6 +184,18 @@ TEST(Align, DoesNotForgiveAPartition) {
   }
 }
 
+/// Low enough to be furniture, but no two things: what is that wide may be all that tells two rooms apart.
+TEST(Align, DoesNotForgiveACounterThroughHalfTheRoom) {
+  for (const double moved_by : {0.5, 0.7}) {
+    Points before = room();
+    Points after = before;
+    add_box(before, {-2.0, -1.9, 0.0}, {1.4, -1.6, 1.1}, false);
+    add_box(after, {-2.0, -1.9 + moved_by, 0.0}, {1.4, -1.6 + moved_by, 1.1}, false);
+    const Alignment answer = align(cloud_map(before), cloud_map(after), Transform::Identity(), 1);
+    EXPECT_EQ(answer.reason, AlignReason::kDiverged) << moved_by << " m: " << answer.message;
+  }
+}
+
 TEST(Align, DoesNotTakeAGuessAStoreyUp) {
   for (const double storey : {2.4, 2.6, 2.9}) {
     const AlignMap target = cloud_map(moved(room(), transform(0.0, 0.0, storey, 0.0)));

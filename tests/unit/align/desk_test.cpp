@@ -67,9 +67,13 @@ class Desk : public ::testing::Test {
     ask(id);
     find_next(id);
   }
-  void offer(const std::string& id) {
+  /// @return whether people are told.
+  bool offer(const std::string& id, const Alignment& found = accepted_alignment()) {
     const AlignTask task = recheck_of(id, layers_);
-    desk_.offer(task, result_of(task, accepted_alignment(), now_));
+    return desk_.offer(task, result_of(task, found, now_)) != nullptr;
+  }
+  Result<void> drop(const std::string& id) {
+    return desk_.drop({"drop-" + id, "eva", AlignDecision::Op::kDrop, id, now_});
   }
   Result<AlignDesk::Acceptance> accept(const std::string& decision, const std::string& id) {
     return desk_.accept({decision, "eva", AlignDecision::Op::kAccept, id, now_}, layers_, true, now_);
@@ -118,6 +122,46 @@ TEST_F(Desk, AnOfferExpiresAndItsAgentIsNamed) {
   EXPECT_EQ(desk_.expire_offers(now_), std::vector<std::string>{"robot2"});
   EXPECT_EQ(said(), 0U);
   EXPECT_EQ(desk_.offers(), 0U);
+}
+
+TEST_F(Desk, WhatPeopleDroppedIsNotOfferedAgainWhileTheAgentMapsOn) {
+  const auto found_at = [](double x, double yaw) {
+    Alignment out = accepted_alignment();
+    out.T_target_source = transform(5 + x, 0, 0, yaw);
+    return out;
+  };
+  ASSERT_TRUE(offer("slip1", found_at(0.3, 0)));
+  ASSERT_TRUE(drop("slip1"));
+  EXPECT_TRUE(drop("slip1")) << "the answer may have been lost";
+  layers_["robot2"].revision = 8;
+  desk_.heed(layers_);
+  EXPECT_FALSE(offer("slip2", found_at(0.3, 0)));
+  EXPECT_FALSE(offer("slip3", found_at(0.39, degrees(1.4)))) << "it is the same slip";
+  EXPECT_EQ(said(), 0U);
+  EXPECT_TRUE(offer("slip4", found_at(0.41, 0))) << "it slipped farther";
+  EXPECT_TRUE(offer("slip5", found_at(0.3, degrees(1.6)))) << "it turned";
+  EXPECT_FALSE(offer("slip6", found_at(0.3, 0)));
+  EXPECT_EQ(said(), 0U) << "what was said no longer holds, and what holds was dropped";
+  layers_["robot2"].T_map_agent = transform(5, 0.01, 0, 0);
+  desk_.heed(layers_);
+  EXPECT_TRUE(offer("slip7", found_at(0.3, 0))) << "it was placed anew";
+  layers_["robot2"].T_map_agent = transform(5, 0, 0, 0);
+  desk_.heed(layers_);
+  EXPECT_TRUE(offer("slip8", found_at(0.3, 0))) << "it was placed anew, where it lay before";
+}
+
+TEST_F(Desk, ADroppedContradictionIsSaidAgainWhenMoreSpeaksAgainstThePlace) {
+  const auto against = [](double share) {
+    Alignment out;
+    out.reason = AlignReason::kDiverged;
+    out.against_upright = share;
+    return out;
+  };
+  ASSERT_TRUE(offer("slip1", against(0.10)));
+  ASSERT_TRUE(drop("slip1"));
+  EXPECT_FALSE(offer("slip2", against(0.14)));
+  EXPECT_TRUE(offer("slip3", against(0.16)));
+  EXPECT_TRUE(offer("slip4")) << "now it is known how it lies right";
 }
 
 TEST_F(Desk, IsAcceptedOnceMergeAgrees) {

@@ -77,6 +77,61 @@ TEST(Gates, WantWallsAndNothingAgainstThemWhereThingsWereMoved) {
   EXPECT_FALSE(agrees_but_for_moved_things(rest)) << "half a small room laid over the other half";
 }
 
+/// In a row of offices each has its chairs elsewhere.
+TEST(Gates, CallMorePlacesRivalsWhereNobodyGuessed) {
+  const auto with_against = [](double share) {
+    Support s = a_good_place();
+    for (Verdicts* v : {&s.source_upright, &s.target_upright}) {
+      v->matched = 45.0;  // 90 m2 of both: a room
+      v->displaced = 45.0 * share / (1.0 - share);
+    }
+    return s;
+  };
+  const Support accepted = with_against(0.015);
+  EXPECT_TRUE(is_rival(with_against(0.049), accepted, Origin::kGuess));
+  EXPECT_FALSE(is_rival(with_against(0.051), accepted, Origin::kGuess));
+  EXPECT_TRUE(is_rival(with_against(0.074), accepted, Origin::kAnywhere)) << "five times as much as the answer has";
+  EXPECT_FALSE(is_rival(with_against(0.076), accepted, Origin::kAnywhere));
+  EXPECT_TRUE(is_rival(with_against(0.099), with_against(0.025), Origin::kAnywhere));
+  EXPECT_FALSE(is_rival(with_against(0.101), with_against(0.025), Origin::kAnywhere)) << "a tenth is another office";
+  EXPECT_TRUE(is_rival(with_against(0.049), with_against(0.0), Origin::kAnywhere)) << "no less than with a guess";
+  EXPECT_FALSE(is_rival(with_against(0.051), with_against(0.0), Origin::kAnywhere));
+  Support apart = with_against(0.0);
+  for (Verdicts* v : {&apart.source_upright, &apart.target_upright}) v->all = 200.0;
+  EXPECT_FALSE(is_rival(apart, accepted, Origin::kAnywhere)) << "hardly anything lies on anything";
+}
+
+/// A mirror image that lies better tells rooms apart, up to the size of a hall.
+TEST(Gates, AskForAMirrorImageUpToTheSizeOfAHall) {
+  const auto of_walls = [](double matched) {
+    Support s = a_good_place();
+    s.source_upright = s.target_upright = {matched, 0.5 * matched, 0.01 * matched, 0.0};
+    return s;
+  };
+  EXPECT_TRUE(may_be_mirrored(of_walls(100.0)));
+  EXPECT_TRUE(may_be_mirrored(of_walls(600.0))) << "a floor of offices";
+  EXPECT_TRUE(may_be_mirrored(of_walls(1990.0)));
+  EXPECT_FALSE(may_be_mirrored(of_walls(2010.0)));
+  EXPECT_FALSE(may_be_mirrored(a_good_place())) << "nothing is against it";
+}
+
+/// What is left against a place beside the right one, once a cupboard is taken out.
+TEST(Gates, KnowWhatAThingAloneHolds) {
+  Support rest = a_good_place();
+  EXPECT_TRUE(is_held_by_a_thing(rest, a_good_place()));
+  rest.source_upright.displaced = 0.25;
+  EXPECT_TRUE(is_held_by_a_thing(rest, a_good_place()));
+  rest.source_upright.displaced = 0.35;
+  EXPECT_FALSE(is_held_by_a_thing(rest, a_good_place())) << "something else holds it as well";
+  Support good = a_good_place();
+  good.source_upright.displaced = 0.1;
+  EXPECT_TRUE(is_held_by_a_thing(rest, good));
+  rest = a_good_place();
+  for (Verdicts* v : {&rest.source_upright, &rest.target_upright}) v->matched = 10.0;
+  for (Verdicts* v : {&rest.source_level, &rest.target_level}) v->matched = 4.0;
+  EXPECT_FALSE(is_held_by_a_thing(rest, a_good_place())) << "hardly anything lies on anything";
+}
+
 TEST(Gates, KnowAMirrorImageThatHasLessInCommonButNothingAgainst) {
   Support found = a_good_place();
   found.source_upright.displaced = 3.0;

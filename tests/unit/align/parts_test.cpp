@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <limits>
 #include <map>
@@ -98,6 +99,35 @@ TEST(SurfaceLevel, HasNormalsOfWallsThatStandAskew) {
     }
   }
   EXPECT_GT(flat, level.cells().size() * 9 / 10);
+}
+
+TEST(SurfaceLevel, LeavesOutWhatStraysAboutAWallAndKeepsTheWall) {
+  Points wall;
+  for (int u = 0; u < 160; ++u) {
+    for (int z = 0; z < 80; ++z) {
+      const double waves = 0.004 * ((7 * u + 13 * z) % 5 - 2);  // metres across: up to 8 mm either way
+      wall.push_back(Eigen::Vector3d(u * kSpacing, waves, z * kSpacing).cast<float>());
+    }
+  }
+  Points all = wall;
+  Points strays;
+  for (int i = 0; i < 200; ++i) {
+    const double off = i % 2 == 0 ? 0.06 : -0.06;
+    strays.push_back(Eigen::Vector3d(0.3 + 0.017 * i, off, 0.3 + 0.007 * i).cast<float>());
+    all.push_back(strays.back());
+  }
+  // What is no plane stays: it may be furniture.
+  const Eigen::Vector3f alone(20.0F, 0.0F, 1.0F);
+  all.push_back(alone);
+  const SurfaceLevel level(all, 0.2, 1);
+  ASSERT_GT(level.thickness(), 0.004);
+  ASSERT_LT(level.thickness(), 0.03);
+  const SurfacePoints kept = level.without_strays(all, 1);
+  EXPECT_EQ(kept, level.without_strays(all, 2));
+  const auto is_kept = [&](const Eigen::Vector3f& p) { return std::find(kept.begin(), kept.end(), p) != kept.end(); };
+  EXPECT_EQ(std::count_if(strays.begin(), strays.end(), is_kept), 0);
+  EXPECT_TRUE(is_kept(alone));
+  EXPECT_GE(kept.size(), wall.size() * 99 / 100);
 }
 
 RC_GTEST_PROP(SurfaceLevel, FindsTheNearestMeanThatLiesWithinHalfACell, ()) {

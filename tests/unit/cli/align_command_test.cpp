@@ -106,11 +106,18 @@ TEST_F(AlignFilesTest, TakesAGuessAndDrawsBeforeAndAfter) {
 /// What was found is printed whatever becomes of the picture, and in JSON there is nothing else.
 TEST_F(AlignFilesTest, APictureThatFailsTakesNothingFromWhatWasFound) {
   const std::string target = write("left.pcd", pcd(left_part())), source = write("right.pcd", pcd(right_part()));
-  EXPECT_EQ(align({source, target, "--picture", path("none/out.png")}), 2);
+  fs::create_directory(path("taken.png"));
+  EXPECT_EQ(align({source, target, "--picture", path("taken.png")}), 2);
   expect_found();
   const std::string one = write("one.pcd", pcd({{0, 0, 0}, {1, 0, 0}}));
   EXPECT_EQ(align({one, target, "--picture", path("out.png")}), 3) << "nothing to draw";
   EXPECT_EQ(said_["reason"], "NO_MAP");
+}
+
+TEST_F(AlignFilesTest, APictureIntoNoFolderIsRefusedBeforeAnythingIsRead) {
+  EXPECT_EQ(align({path("none.pcd"), path("none.pcd"), "--picture", path("none/out.png")}), 2);
+  EXPECT_EQ(said_["error"]["code"], "NOT_FOUND");
+  EXPECT_NE(said_["error"]["message"].get<std::string>().find("picture"), std::string::npos) << said_;
 }
 
 TEST_F(AlignFilesTest, AnotherRoomIsRefusedWithTheFigures) {
@@ -178,6 +185,20 @@ TEST_F(AlignFilesTest, BadFilesAreRefusedInWords) {
   expect_unusable(write("negative.ply", ply({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, "3 0 1 -1\n")), "MALFORMED");
 }
 
+/// The library that reads them takes WIDTHX for WIDTH, and memory for what it claims: so must whoever checks the claim.
+TEST_F(AlignFilesTest, ClaimsOfAHeaderAreHeardByWhateverWordIsTakenForThem) {
+  const std::string honest = pcd({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  const auto with_line = [&](const std::string& name, const std::string& line) {
+    std::string text = honest;
+    return write(name, text.insert(text.find("VIEWPOINT"), line + "\n"));
+  };
+  expect_unusable(with_line("widthx.pcd", "WIDTHX 4000000000"), "TOO_LARGE");
+  expect_unusable(with_line("heights.pcd", "HEIGHTS 4000000000"), "TOO_LARGE");
+  expect_unusable(with_line("pointsx.pcd", "POINTSX 4000000000"), "TOO_LARGE");
+  expect_unusable(with_line("sizes.pcd", "SIZES 4 4 4000000"), "TOO_LARGE");
+  EXPECT_TRUE(read_cloud(with_line("other.pcd", "# a WIDTH 4000000000"), 0.05)) << "that is a remark";
+}
+
 TEST_F(AlignFilesTest, CutAnywhereAFileIsReadOrRefused) {
   for (const auto& [name, text] : {std::pair("cut.pcd", pcd({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})),
                                    std::pair("cut.ply", ply({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, "3 0 1 2\n"))}) {
@@ -193,6 +214,7 @@ TEST_F(AlignFilesTest, AWrongUseIsToldSo) {
   EXPECT_EQ(align({file}), 2);
   EXPECT_EQ(align({file, file, "--accept"}), 2);
   EXPECT_EQ(align({file, file, "--guess", "1 2 3"}), 2);
+  EXPECT_EQ(align({file, file, "--guess", ""}), 2) << "a script whose variable is unset asks for no search everywhere";
   EXPECT_EQ(align({"a", "b", "--from-files"}), 2);
 }
 
