@@ -116,11 +116,13 @@ class Planner {
     Body body;
     Pose start;
     std::vector<PoseTarget> targets;
+    bool begins_at_robot = false;           ///< wherever that is when its turn comes
     std::optional<PosePlan> refused = {};   ///< when its turn came
     std::shared_ptr<PoseQuest> quest = {};  ///< none before that
 
     PoseJob(std::string of, Level* on, Body with, const Pose& from, std::vector<PoseTarget> to)
         : robot(std::move(of)), level(on), body(std::move(with)), start(from), targets(std::move(to)) {}
+    [[nodiscard]] bool is_over() const { return refused || (quest && quest->is_done()); }
     PoseJob(const PoseJob&) = delete;
     PoseJob& operator=(const PoseJob&) = delete;
     ~PoseJob() {
@@ -147,6 +149,7 @@ class Planner {
     std::vector<Pose> poses;               ///< `points` with yaws, of a robot with a body
     std::shared_ptr<PoseJob> job;          ///< while one is looked for
     int tries = 0;                         ///< of searches that a change came into
+    bool is_outdated = false;              ///< no way was found on a map that has changed since
   };
 
   /// Between two calls of `serve` about so many cells may be looked at: some 100 ms.

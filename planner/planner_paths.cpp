@@ -121,6 +121,7 @@ std::optional<Eigen::Vector2d> Planner::nearest(const Active& active, const Plan
 /// From scratch, or on where it was left. False: not done yet.
 bool Planner::find(Active& active, const Moment& moment) {
   const std::string& robot = active.request.robot;
+  if (active.job && !active.job->is_over()) return false;
   if (active.level != nullptr) active.level->look_as(robot);
   if (active.robot.body) return find_poses(active, moment);
   if (!active.route) {

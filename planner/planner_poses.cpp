@@ -75,6 +75,8 @@ std::optional<PlanResult> Planner::begin_poses(Active& active) {
   if (auto refused = planner->check(start, targets)) return result_of(std::move(*refused));
   active.begun = version_;
   active.job = std::make_shared<PoseJob>(active.request.robot, active.level, *active.robot.body, start, targets);
+  active.job->begins_at_robot = !active.request.start;
+  std::erase_if(jobs_, [](const std::weak_ptr<PoseJob>& job) { return job.expired(); });
   jobs_.push_back(active.job);
   return std::nullopt;
 }
@@ -86,6 +88,9 @@ std::shared_ptr<PoseQuest> Planner::next_quest() {
     const std::shared_ptr<PoseJob> job = jobs_.front().lock();
     jobs_.pop_front();
     if (!job) continue;  // withdrawn
+    if (const auto pose = poses_.find(job->robot); job->begins_at_robot && pose != poses_.end()) {
+      job->start = {pose->second.p, pose->second.yaw};  // it has waited
+    }
     job->level->look_as(job->robot);
     const auto planner = job->level->poses().at(job->robot, job->body);
     job->refused = planner->check(job->start, job->targets);
@@ -97,24 +102,27 @@ std::shared_ptr<PoseQuest> Planner::next_quest() {
 /// False: it is in the queue, or under way.
 bool Planner::find_poses(Active& active, const Moment& moment) {
   effort_ += kEffortOfAPlan;
+  active.is_outdated = false;
   if (!active.job) {
     auto refused = begin_poses(active);
     if (!refused) return false;
     take(active, std::move(*refused), moment);
     return true;
   }
-  const bool is_over = active.job->refused || (active.job->quest && active.job->quest->is_done());
-  if (!is_over) return false;
+  active.start = active.job->start.p;
   const std::shared_ptr<PoseJob> job = std::exchange(active.job, nullptr);
   // Not of necessity the planner that began it: that may have been dropped meanwhile, and know nothing of changes
   // since.
   const auto planner = active.level->poses().at(active.request.robot, *active.robot.body);
   PosePlan found = job->refused ? std::move(*job->refused) : planner->finish(*job->quest, moment.map_revision);
   effort_ += static_cast<std::int64_t>(found.poses.size()) * kEffortOfAPose;
-  if (found.reason == Reason::kValidationFailed && active.begun != version_) {
+  if (found.reason != Reason::kOk && active.begun != version_) {
     if (++active.tries < kMostTries) return find_poses(active, moment);
-    found.reason = Reason::kBusy;
-    found.message = "the map changed under the search again and again: ask again";
+    active.is_outdated = true;
+    if (found.reason == Reason::kValidationFailed) {
+      found.reason = Reason::kBusy;
+      found.message = "the map changed under the search again and again: ask again";
+    }
   }
   active.tries = 0;
   active.changes.clear();
@@ -123,10 +131,9 @@ bool Planner::find_poses(Active& active, const Moment& moment) {
     result = PlanResult{};
     result.reason = wrong->reason;
     result.message = wrong->message;
+  } else if (job->quest) {
+    blame({active.level->grids(), active.robot.body->footprint.inscribed()}, *job->quest, result);
   }
-  const Footprint& footprint = active.robot.body->footprint;
-  RobotGrids& grids = active.level->grids();
-  if (job->quest) blame({grids, footprint.inscribed()}, *job->quest, result);
   if (result.reason == Reason::kOk) result.zones = zones_near(task(active), result.points);
   take(active, std::move(result), moment);
   active.poses = active.points.empty() ? std::vector<Pose>() : std::move(found.poses);

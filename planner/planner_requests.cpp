@@ -15,8 +15,8 @@ constexpr std::int64_t kSecond = 1'000'000;
 bool is_recent(std::int64_t utime, std::int64_t now) { return utime <= now && now - utime < kSecond; }
 
 bool is_failed_search(const Path& path) {
-  constexpr std::array kFailures{Reason::kNoValidPath, Reason::kWaypointUnreachable, Reason::kBlockedByEdit,
-                                 Reason::kBlockedByUnknown, Reason::kSearchLimit};
+  constexpr std::array kFailures{Reason::kNoValidPath,      Reason::kWaypointUnreachable, Reason::kBlockedByEdit,
+                                 Reason::kBlockedByUnknown, Reason::kSearchLimit,         Reason::kBusy};
   return std::any_of(kFailures.begin(), kFailures.end(), [&](Reason reason) { return path.status == name(reason); });
 }
 
@@ -103,8 +103,12 @@ Planner::Reply Planner::request(const PathRequest& request, const Robot& robot, 
   }
   if (now.robot.body) now.robot.radius = now.robot.body->footprint.circumscribed();
   now.level = level_for(robot);
-  if (effort_ < kEffort && !is_anybodys_turn() && find(now, moment)) return settle(std::move(now), moment);
-  if (waiting_.size() < kMaxWaiting) {
+  const bool has_room = waiting_.size() < kMaxWaiting;
+  const bool may_begin = has_room || !now.robot.body;  // with a body it would have to wait
+  if (may_begin && effort_ < kEffort && !is_anybodys_turn() && find(now, moment)) {
+    return settle(std::move(now), moment);
+  }
+  if (has_room) {
     waiting_.push_back(std::move(now));
     return {};
   }
@@ -132,7 +136,8 @@ Planner::Reply Planner::settle(Active active, const Moment& moment) {
   if (before != active_.end()) active.path.superseded = before->second.path.path_id;
   Reply reply{active.path, end(request.robot)};
   const std::string robot = request.robot;
-  active_.emplace(robot, std::move(active));
+  const auto kept = active_.emplace(robot, std::move(active)).first;
+  if (kept->second.is_outdated) wait(kept->second);
   return reply;
 }
 
@@ -197,7 +202,7 @@ std::vector<Path> Planner::replan(const Moment& moment) {
       }
     }
     active->turn = 0;
-    if (active->job) wait(*active);
+    if (active->job || active->is_outdated) wait(*active);
     const bool is_another = active->path.status != before.status || active->path.points != before.points ||
                             left_a_zone != active->exit.has_value() ||
                             (active->points.empty() && active->found != found_before);

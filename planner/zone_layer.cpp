@@ -71,7 +71,7 @@ ZoneLayer::Change ZoneLayer::set(std::span<const Zone> zones) {
     has_no_go_ |= zone.is_no_go();
     has_contact_ |= zone.is(Zone::Kind::kAllowContact);
     has_costly_ |= zone.is(Zone::Kind::kCostly);
-    has_corridors_ |= zone.is(Zone::Kind::kCorridor);
+    has_corridors_ |= zone.is(Zone::Kind::kCorridor) && zone.has_cells();  // others are of another storey
     if (zone.is_fine || zone.is(Zone::Kind::kAllowContact)) continue;
     zone.is_no_go() ? rectangles_.push_back(zone.around) : large_.push_back(zone);
   }

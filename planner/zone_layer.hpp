@@ -79,6 +79,7 @@ class ZoneLayer {
 
     [[nodiscard]] bool is(Zone::Kind kind) const { return zone.kind == kind; }
     [[nodiscard]] bool is_no_go() const { return is(Zone::Kind::kNoGo); }
+    [[nodiscard]] bool has_cells() const { return is_fine ? !cells.columns.empty() : around.low.x <= around.high.x; }
     [[nodiscard]] std::uint64_t plane(BrickIndex column) const {
       return is_fine ? cells.plane(column) : around.plane(column);
     }

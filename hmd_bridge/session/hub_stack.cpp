@@ -234,8 +234,8 @@ void Hub::sweep() {
     if (!layer.changed.empty()) continue;  // views have not been told: they may lack blocks that are empty meanwhile
     for (const BlockKey& key : layer.store.emptied_before(layers_.revision())) {
       const std::int64_t revision = layer.store.revision(key);
-      const bool all_know = std::all_of(sessions_.begin(), sessions_.end(), [&](const auto& entry) {
-        const auto view = entry.second.views.find(stream);
+      const bool all_know = std::all_of(sessions_.begin(), sessions_.end(), [&, &name = stream](const auto& entry) {
+        const auto view = entry.second.views.find(name);
         return view == entry.second.views.end() || view->second.held(key) == 0 || view->second.held(key) >= revision;
       });
       if (all_know) layer.store.drop(key);

@@ -94,15 +94,25 @@ std::vector<Outline> shared(const std::vector<Outline>& all, double side) {
   return out;
 }
 
+/// At most so many, which must be no fewer than there are costs.
+std::vector<Outline> fewer(std::vector<Outline> all, std::size_t most) {
+  if (all.size() <= most) return all;
+  std::vector<Outline> out = all;
+  for (double side = kFirstCell; out.size() > most; side *= 2) out = shared(all, side);
+  return out;
+}
+
 }  // namespace
 
 std::vector<Zone> keep_out_zones(std::span<const KeptClearOf> things, double resolution, std::size_t most) {
-  std::vector<Outline> outlines;
-  for (const KeptClearOf& thing : things) outlines.push_back(outline_of(thing, resolution));
-  std::vector<Outline> fewer = outlines;
-  for (double side = kFirstCell; fewer.size() > most; side *= 2) fewer = shared(outlines, side);
+  std::vector<Outline> closed, dear;
+  for (const KeptClearOf& thing : things) (thing.cost == 0 ? closed : dear).push_back(outline_of(thing, resolution));
+  // What only costs shares first: a hull around several things would close the ways between them.
+  closed = fewer(std::move(closed), most - std::min<std::size_t>(dear.size(), Zone::kMaxCost));
+  dear = fewer(std::move(dear), most - closed.size());
+  closed.insert(closed.end(), dear.begin(), dear.end());
   std::vector<Zone> out;
-  for (const Outline& outline : fewer) out.push_back(zone_of(outline));
+  for (const Outline& outline : closed) out.push_back(zone_of(outline));
   std::stable_sort(out.begin(), out.end(), [](const Zone& a, const Zone& b) { return a.name < b.name; });
   return out;
 }

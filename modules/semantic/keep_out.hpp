@@ -20,7 +20,8 @@ struct KeptClearOf {
 /// A no-go or costly zone around each thing: all ground within `margin` of its voxels, seen from above, over the
 /// heights that it has. It is the polygon of 32 sides around that, so it fills what the thing is hollow of, and reaches
 /// farther than it should by at most half a percent of the margin and a twentieth of the thing: on the safe side. Over
-/// `most` things, those near to one another that cost the same share a zone, no fewer than must be. @pre `most` is
+/// `most` things, those near to one another that cost the same share a zone, no fewer than must be,
+/// and no-go zones only where those alone are too many. @pre `most` is
 /// above Zone::kMaxCost
 [[nodiscard]] std::vector<Zone> keep_out_zones(std::span<const KeptClearOf> things, double resolution,
                                                std::size_t most = kMaxZones);

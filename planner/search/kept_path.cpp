@@ -67,9 +67,8 @@ void KeptPath::begin_at(std::size_t first) {
   if (first == 0) return;
   std::vector<Cell> cells(path_->cells.begin() + static_cast<std::ptrdiff_t>(first), path_->cells.end());
   start_ = cells.front();
-  const std::int64_t before = path_->cost;
+  cost_ -= std::min(cost_, path_->sums[first]);
   path_ = paths_->clearance().shorten(std::move(cells));
-  cost_ -= std::min(cost_, before - path_->cost);
 }
 
 KeptPath::Outcome KeptPath::follow(const Window& window, bool opened) {

@@ -60,6 +60,18 @@ TEST(KeepOut, ZonesThatAreSharedAreOfOneCost) {
   }
 }
 
+TEST(KeepOut, WhatOnlyCostsClosesNoWays) {
+  std::vector<KeptClearOf> things;
+  for (int i = 0; i < 30; ++i) {
+    const VoxelIndex voxel{i * 12, 0, 0};
+    things.push_back({"chair " + std::to_string(i), {voxel}, 0.1});
+    things.push_back({"near chair " + std::to_string(i), {voxel}, 0.3, 4});
+  }
+  const auto zones = keep_out_zones(things, kResolution, 50);
+  EXPECT_LE(zones.size(), 50U);
+  EXPECT_EQ(std::ranges::count(zones, Zone::Kind::kNoGo, &Zone::kind), 30);
+}
+
 TEST(KeepOut, LongNamesAreCutBetweenCharacters) {
   std::string name;
   for (int i = 0; i < 30; ++i) name += "€";
