@@ -138,6 +138,7 @@ Outcome plan_footprint(const FootprintOptions& options, const Ground2D& ground, 
   object["prep_ms"] = milliseconds(prepared - begin);
   object["ms"] = ms;
   common.print(object, to_words(plan));
+  if (plan.reason == Reason::kBadRequest) return Exit::kUnusable;
   return plan.reason == Reason::kOk ? Exit::kDone : Exit::kNegative;
 }
 

@@ -72,7 +72,7 @@ nlohmann::json to_json(const ScenarioResult& result) {
 std::string to_words(const ScenarioResult& result) {
   return "queries   " + format_count(static_cast<std::int64_t>(result.paths.size())) + "\nsolved    " +
          format_count(static_cast<std::int64_t>(result.solved)) + "\noptimal   " +
-         format_count(static_cast<std::int64_t>(result.optimal)) + "\nratio     " +
+         format_count(static_cast<std::int64_t>(result.optimal)) + " by steps in eight directions\nratio     " +
          format_number(result.mean_ratio, 4) + " mean, " + format_number(result.worst_ratio, 4) + " worst\noff goal  " +
          format_count(static_cast<std::int64_t>(result.off_goal)) + "\ninvalid   " +
          format_count(static_cast<std::int64_t>(result.invalid)) + "\ntime      " +

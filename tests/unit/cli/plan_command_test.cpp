@@ -138,6 +138,14 @@ TEST_F(PlanCommand, GoesOverAMapServersGridInItsOwnFrame) {
   EXPECT_EQ(with("nan 1").exit, 2);
 }
 
+TEST_F(PlanCommand, ATurnRadiusThatIsNoneIsAFaultOfTheAsker) {
+  for (const char* radius : {"nan", "-1", "0.001"}) {
+    const Ran ran = run({"--grid", file("g.yaml"), "--json", "--footprint", "1.2x0.8", "--from", "12 -3 0.5", "--to",
+                         "28 -3 1.57", "--turn-radius", radius});
+    EXPECT_EQ(ran.exit, 2) << radius;
+  }
+}
+
 TEST_F(PlanCommand, TakesAFootprint) {
   const std::vector<std::string> base{"--grid", file("g.yaml"), "--json",   "--turn-radius",
                                       "0.8",    "--from",       "12 -3 0.5"};
