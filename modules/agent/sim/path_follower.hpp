@@ -39,13 +39,18 @@ class PathFollower {
 
  private:
   void stop();
-  [[nodiscard]] Place at(double along) const;
+  struct Step {
+    Place place;
+    double heading;  ///< of the way there: one with a footprint may go backwards
+  };
+  [[nodiscard]] Step at(double along) const;
 
   Place place_;
   double speed_;
   std::string request_;
   std::int64_t path_id_ = 0, heard_ = 0;
   std::vector<Eigen::Vector2d> points_;
+  std::vector<double> yaws_;  ///< at each, of a path for a footprint; turns in place take no time
   std::vector<double> sums_;  ///< metres along to each
   double along_ = 0, length_ = 0, driven_ = 0;
   int stops_ = 0;

@@ -48,6 +48,31 @@ TEST(PathFollower, AnotherPathTurnsItAsideFromWhereItIs) {
   EXPECT_EQ(robot.stops(), 0);
 }
 
+TEST(PathFollower, WithAFootprintItPointsWhereThePathSays) {
+  PathFollower robot({{0, 0}, 3.0}, 1);
+  Path back = path_of(1, {{0, 0, 0}, {-2, 0, 0}, {-2, 0, 0}});
+  back.footprint = {{0.6, 0.4}, {-0.6, 0.4}, {-0.6, -0.4}, {0.6, -0.4}};
+  back.details.resize(3);
+  back.details[0].yaw = 3.0;
+  back.details[1].yaw = -3.0;
+  back.details[2].yaw = 1.0;
+  robot.hear(back, 0);
+  ASSERT_TRUE(robot.go(1, kFree, 0));
+  EXPECT_NEAR(std::remainder(robot.place().yaw - M_PI, 2 * M_PI), 0, 1e-9) << "half way, the shorter way round";
+  EXPECT_NEAR(std::abs(robot.heading()), M_PI, 1e-9);
+  ASSERT_TRUE(robot.go(1, kFree, 0));
+  EXPECT_NEAR(robot.place().yaw, 1.0, 1e-9);
+}
+
+TEST(PathFollower, APathThatIsFarAwayStopsItOnce) {
+  PathFollower robot({{0, 0}, 0}, 1);
+  for (int i = 0; i < 3; ++i) robot.hear(path_of(2, {{0, 5, 0}, {4, 5, 0}}), i * kSecond);
+  EXPECT_EQ(robot.stops(), 0) << "it was on none";
+  robot.hear(kRoundTheCorner, 3 * kSecond);
+  for (int i = 4; i < 7; ++i) robot.hear(path_of(2, {{0, 5, 0}, {4, 5, 0}}), i * kSecond);
+  EXPECT_EQ(robot.stops(), 1);
+}
+
 TEST(PathFollower, WhatTheValidatorRefusesStopsIt) {
   for (const char* status : {"VALIDATION_FAILED", "REPLANNING", "NO_VALID_PATH", "MAP_STALE"}) {
     PathFollower robot({{0, 0}, 0}, 1);
