@@ -21,8 +21,11 @@ bool is_loopback(const std::string& address) {
 }
 
 bool is_local_host(const std::string& host) {
-  const std::string name = lower(host.substr(0, host.starts_with('[') ? host.find(']') + 1 : host.find(':')));
-  const bool dotted = std::all_of(name.begin(), name.end(), [](char c) { return (c >= '0' && c <= '9') || c == '.'; });
+  const std::size_t end = host.starts_with('[') ? host.find(']') + 1 : std::min(host.find(':'), host.size());
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  const std::string name = lower(host.substr(0, end)), port = host.substr(end);
+  if (!port.empty() && (port[0] != ':' || !std::all_of(port.begin() + 1, port.end(), is_digit))) return false;
+  const bool dotted = std::all_of(name.begin(), name.end(), [&](char c) { return is_digit(c) || c == '.'; });
   return name == "localhost" || name == "[::1]" || (dotted && name.starts_with("127."));
 }
 

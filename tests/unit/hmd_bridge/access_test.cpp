@@ -70,7 +70,8 @@ TEST(Origin, OnlyThisMachinesOwnNamesAreLocal) {
   for (const char* host : {"localhost", "localhost:8443", "127.0.0.1:1", "[::1]:8443", "LOCALHOST"})
     EXPECT_TRUE(is_local_host(host)) << host;
   for (const char* host :
-       {"", "evil.example", "localhost.evil.example", "127.evil.example", "127.0.0.1.evil.example:80", "[::2]"}) {
+       {"", ":", ":80", "evil.example", "localhost.evil.example", "127.evil.example", "127.0.0.1.evil.example:80",
+        "[::2]", "[::1", "[::1].evil.example", "[::1]:80.evil.example", "localhost:evil"}) {
     EXPECT_FALSE(is_local_host(host)) << host;
   }
   EXPECT_TRUE(is_loopback("127.0.0.1") && is_loopback("::1") && is_loopback("::ffff:127.0.0.1"));
