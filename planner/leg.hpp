@@ -62,6 +62,8 @@ class Leg {
   [[nodiscard]] std::vector<Eigen::Vector2d> improve(const RobotTask& task, std::int64_t& expanded);
 
   [[nodiscard]] const End& to() const { return to_; }
+  /// Whether the way is a fast path, which heeds neither walls nor costs.
+  [[nodiscard]] bool is_fast() const { return kept_ && kept_->path() && kept_->path()->is_fast; }
 
  private:
   struct Ends {

@@ -95,6 +95,10 @@ PlanResult finish(const RobotTask& task, Route::Found found, const std::optional
   result.message = "a path of " + metres(result.length) + ", at least " + metres(result.least_clearance) +
                    " from anything occupied or unknown" +
                    (task.terrain().zones().has_no_go() ? " and from no-go zones" : "");
+  if (found.is_fast) {
+    result.message +=
+        "; as the search for one away from walls took too long, it is the shortest, and no costs are heeded";
+  }
   if (exit) result.message = "it leaves the no-go zone '" + exit->zone + "' first: " + result.message;
   return result;
 }

@@ -117,6 +117,7 @@ class Planner {
     Pose start;
     std::vector<PoseTarget> targets;
     bool begins_at_robot = false;           ///< wherever that is when its turn comes
+    bool stops_a_robot = false;             ///< it has been told to wait for it
     std::optional<PosePlan> refused = {};   ///< when its turn came
     std::shared_ptr<PoseQuest> quest = {};  ///< none before that
 
@@ -147,6 +148,7 @@ class Planner {
     bool must_begin_anew = false;          ///< the robot has left its path
     std::optional<Objection> refused;      ///< what it was asked for cannot be
     std::vector<Pose> poses;               ///< `points` with yaws, of a robot with a body
+    double cost = 0;                       ///< of these, when they were found
     std::shared_ptr<PoseJob> job;          ///< while one is looked for
     int tries = 0;                         ///< of searches that a change came into
     bool is_outdated = false;              ///< no way was found on a map that has changed since
@@ -165,9 +167,11 @@ class Planner {
   [[nodiscard]] bool keep_up(Active& active, const Moment& moment);
   [[nodiscard]] static std::vector<PoseTarget> targets_of(const PathRequest& request);
   [[nodiscard]] std::optional<PlanResult> begin_poses(Active& active);
+  [[nodiscard]] std::shared_ptr<PoseJob> next_job();
   [[nodiscard]] bool find_poses(Active& active, const Moment& moment);
   [[nodiscard]] bool keep_up_poses(Active& active);
   static void tell_of(Active& active, const std::vector<double>& clearance);
+  void charge(std::int64_t looked_at);
   [[nodiscard]] bool is_anybodys_turn() const;
   void take(Active& active, PlanResult result, const Moment& moment);
   static void measure(Active& active);
@@ -197,12 +201,14 @@ class Planner {
   std::map<std::string, Active> active_;  ///< by robot
   std::deque<Active> waiting_;            ///< not answered yet
   std::deque<std::weak_ptr<PoseJob>> jobs_;
+  bool was_for_stopped_ = false;  ///< the last search
   std::shared_ptr<PoseQuest> running_;
   std::int64_t version_ = 0;  ///< of the terrain
   bool is_stale_ = false;
   std::int64_t turns_ = 0;      ///< given out so far
   std::int64_t last_path_ = 0;  ///< path_id
   std::int64_t effort_ = 0;     ///< since the last call of `serve`, in cells looked at
+  std::int64_t made_ = 0;       ///< cells of rectangles, as far as they are in it
   std::deque<Path> recent_;     ///< answers that are not kept active, oldest first
 };
 

@@ -118,6 +118,13 @@ std::optional<Eigen::Vector2d> Planner::nearest(const Active& active, const Plan
   return nearest_reachable(task(active), from, leg < waypoints.size() ? waypoints[leg] : active.request.goal);
 }
 
+/// What was done since the last call: cells that were looked at, and rectangles of cells that had to be made for that.
+void Planner::charge(std::int64_t looked_at) {
+  std::int64_t made = 0;
+  for (const auto& level : levels_) made += level->grids().made() + level->poses().made();
+  effort_ += looked_at + (made - std::exchange(made_, made)) / kMadeAsSoon;
+}
+
 /// From scratch, or on where it was left. False: not done yet.
 bool Planner::find(Active& active, const Moment& moment) {
   const std::string& robot = active.request.robot;
@@ -137,10 +144,8 @@ bool Planner::find(Active& active, const Moment& moment) {
                          active.request.goal);
     active.begun = version_;
   }
-  RobotGrids& grids = active.level->grids();
-  const std::int64_t made = grids.made();
   auto found = active.route->find(task(active), kEffort - effort_);
-  effort_ += kEffortOfAPlan + active.route->expanded() + (grids.made() - made) / kMadeAsSoon;
+  charge(kEffortOfAPlan + active.route->expanded());
   if (!found) return false;
   const bool is_way = found->way.reason == Reason::kOk;
   PlanResult result = finish(task(active), std::move(*found), active.exit);
@@ -167,13 +172,13 @@ bool Planner::keep_up(Active& active, const Moment& moment) {
   const bool is_near = comes_near(active, changes);
   const bool is_still_clear = !is_near || is_clear(active.level->terrain(), active.points, active.robot.radius);
   auto found = active.route->follow(task(active), changes, at);
-  effort_ += kEffortOfAPlan + active.route->expanded();
+  charge(kEffortOfAPlan + active.route->expanded());
   if (!found || (found->way.is_kept && is_still_clear)) {
     if (!is_still_clear) return false;
     if (is_near) measure(active);
     if (effort_ >= kEffort) return true;
     found = active.route->improve(task(active));
-    effort_ += active.route->expanded();
+    charge(active.route->expanded());
     if (!found) return true;
   }
   PlanResult result = finish(task(active), std::move(*found));

@@ -1,5 +1,6 @@
 // How the planner finds paths for robots that are not round, and what becomes of them: searches may take seconds, so
 // they run beside it, one at a time.
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -76,35 +77,48 @@ std::optional<PlanResult> Planner::begin_poses(Active& active) {
   active.begun = version_;
   active.job = std::make_shared<PoseJob>(active.request.robot, active.level, *active.robot.body, start, targets);
   active.job->begins_at_robot = !active.request.start;
+  active.job->stops_a_robot = active.path.active;
   std::erase_if(jobs_, [](const std::weak_ptr<PoseJob>& job) { return job.expired(); });
   jobs_.push_back(active.job);
   return std::nullopt;
 }
 
+/// Robots that stand still until it is done go first, but one other between two of them: neither waits for ever.
+std::shared_ptr<Planner::PoseJob> Planner::next_job() {
+  std::erase_if(jobs_, [](const std::weak_ptr<PoseJob>& job) { return job.expired(); });
+  if (jobs_.empty()) return nullptr;
+  const bool wanted = !was_for_stopped_;
+  auto it = std::find_if(jobs_.begin(), jobs_.end(),
+                         [&](const std::weak_ptr<PoseJob>& job) { return job.lock()->stops_a_robot == wanted; });
+  if (it == jobs_.end()) it = jobs_.begin();
+  const std::shared_ptr<PoseJob> job = it->lock();
+  jobs_.erase(it);
+  was_for_stopped_ = job->stops_a_robot;
+  return job;
+}
+
 std::shared_ptr<PoseQuest> Planner::next_quest() {
   if (running_ && !running_->is_done()) return nullptr;
   running_.reset();
-  while (!jobs_.empty() && !running_) {
-    const std::shared_ptr<PoseJob> job = jobs_.front().lock();
-    jobs_.pop_front();
-    if (!job) continue;  // withdrawn
+  while (const std::shared_ptr<PoseJob> job = next_job()) {
     if (const auto pose = poses_.find(job->robot); job->begins_at_robot && pose != poses_.end()) {
       job->start = {pose->second.p, pose->second.yaw};  // it has waited
     }
     job->level->look_as(job->robot);
     const auto planner = job->level->poses().at(job->robot, job->body);
     job->refused = planner->check(job->start, job->targets);
-    if (!job->refused) running_ = job->quest = planner->begin(job->start, job->targets);
+    charge(kEffortOfAPlan);
+    if (!job->refused) return running_ = job->quest = planner->begin(job->start, job->targets);
   }
-  return running_;
+  return nullptr;
 }
 
 /// False: it is in the queue, or under way.
 bool Planner::find_poses(Active& active, const Moment& moment) {
-  effort_ += kEffortOfAPlan;
   active.is_outdated = false;
   if (!active.job) {
     auto refused = begin_poses(active);
+    charge(kEffortOfAPlan);
     if (!refused) return false;
     take(active, std::move(*refused), moment);
     return true;
@@ -115,7 +129,7 @@ bool Planner::find_poses(Active& active, const Moment& moment) {
   // since.
   const auto planner = active.level->poses().at(active.request.robot, *active.robot.body);
   PosePlan found = job->refused ? std::move(*job->refused) : planner->finish(*job->quest, moment.map_revision);
-  effort_ += static_cast<std::int64_t>(found.poses.size()) * kEffortOfAPose;
+  charge(kEffortOfAPlan + static_cast<std::int64_t>(found.poses.size()) * kEffortOfAPose);
   if (found.reason != Reason::kOk && active.begun != version_) {
     if (++active.tries < kMostTries) return find_poses(active, moment);
     active.is_outdated = true;
@@ -137,6 +151,7 @@ bool Planner::find_poses(Active& active, const Moment& moment) {
   if (result.reason == Reason::kOk) result.zones = zones_near(task(active), result.points);
   take(active, std::move(result), moment);
   active.poses = active.points.empty() ? std::vector<Pose>() : std::move(found.poses);
+  active.cost = planner->cost(active.poses);
   tell_of(active, found.clearance);
   return true;
 }
@@ -158,18 +173,19 @@ void Planner::tell_of(Active& active, const std::vector<double>& clearance) {
   }
 }
 
-/// Whether the path still stands where the changes come near it. It is never improved: nothing is endangered by what
-/// opened.
+/// Whether the path still stands where the changes come near it, and zones have not made it dearer by more than a
+/// share. It is never improved: nothing is endangered by what opened.
 bool Planner::keep_up_poses(Active& active) {
   if (active.poses.empty() || active.must_begin_anew) return false;
   const std::vector<Changed> changes = std::exchange(active.changes, {});
   if (!comes_near(active, changes)) return true;
   active.level->look_as(active.request.robot);
   const auto planner = active.level->poses().at(active.request.robot, *active.robot.body);
-  effort_ += kEffortOfAPlan + static_cast<std::int64_t>(active.poses.size()) * kEffortOfAPose;
+  charge(kEffortOfAPlan + static_cast<std::int64_t>(active.poses.size()) * kEffortOfAPose);
   for (const Changed& change : changes) {
     if (!planner->is_clear(active.poses, change.cells)) return false;
   }
+  if (planner->cost(active.poses) > active.cost * (1 + KeptPath::kShare)) return false;
   const PosePlanner::Room room = planner->room(active.poses);
   active.path.least_clearance = room.least;
   tell_of(active, room.at);

@@ -43,16 +43,22 @@ std::int64_t PosePlanner::cells() const {
   return area_ ? std::int64_t{area_->open().width()} * area_->open().height() : 0;
 }
 
+ColumnFloor PosePlanner::floor_of(BrickIndex column) const {
+  return {column, terrain_.at(column).passable, terrain_.costs(column)};
+}
+
 void PosePlanner::lay_out() {
   if (area_) {
     for (const BrickIndex column : touched_) {
-      if (!area_->holds(column)) {  // the rectangle has grown: all of it anew
+      if (!area_->holds(column)) {
+        if (terrain_.grid().cells().find(column) == nullptr) continue;  // nobody is ever there
+        // The rectangle has grown: all of it anew.
         area_.reset();
         break;
       }
-      const std::uint64_t cells = passable(column);
-      (void)area_->set(column, cells);
-      if (ground_) changed_.push_back({column, cells});
+      const ColumnFloor floor = floor_of(column);
+      (void)area_->set(floor);
+      if (ground_) changed_.push_back(floor);
     }
   }
   touched_.clear();
@@ -68,7 +74,8 @@ void PosePlanner::lay_out() {
   const std::int64_t width = 8 * (std::int64_t{high.x} - low.x + 1), height = 8 * (std::int64_t{high.y} - low.y + 1);
   if (width < 1 || height < 1 || width * height > kMaxCells || std::max(width, height) > OpenGrid::kMaxSide) return;
   area_ = std::make_unique<PoseArea>(low, high);
-  known.for_each_brick([&](BrickIndex b, const Brick&) { (void)area_->set({b.x, b.y, 0}, passable({b.x, b.y, 0})); });
+  made_ += width * height;
+  known.for_each_brick([&](BrickIndex b, const Brick&) { (void)area_->set(floor_of({b.x, b.y, 0})); });
 }
 
 void PosePlanner::prepare() {
@@ -137,6 +144,23 @@ PosePlanner::Room PosePlanner::room(std::span<const Pose> poses) {
   PoseClearance clearance = clearance_of(
       {area_->open(), r, body_.footprint, body_.turn_radius, local.front(), local.back()}, local, kClearanceReach);
   return {std::move(clearance.at), clearance.least};
+}
+
+double PosePlanner::cost(std::span<const Pose> poses) {
+  lay_out();
+  double sum = 0;
+  const double r = terrain_.resolution();
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    const Eigen::Vector2d way = poses[i].p - poses[i - 1].p;
+    const int samples = 1 + static_cast<int>(way.norm() / r);
+    for (int k = 0; area_ && k < samples; ++k) {
+      const Eigen::Vector2d p = (poses[i - 1].p + way * ((k + 0.5) / samples)) / r - area_->corner();
+      const Cell cell{static_cast<std::int32_t>(std::floor(p.x())), static_cast<std::int32_t>(std::floor(p.y()))};
+      const int extra = area_->costs().holds(cell) ? area_->costs().at(cell) : 0;
+      sum += way.norm() / samples * (1 + extra);
+    }
+  }
+  return sum;
 }
 
 bool PosePlanner::is_clear(std::span<const Pose> poses, const Window& cells) {
@@ -221,6 +245,11 @@ PosePlan PosePlanner::finish(const PoseQuest& quest, std::int64_t map_revision) 
       plan.length = length;
       plan.message = "a path of " + metres(plan.length) + ", with at least " + metres(plan.least_clearance) +
                      " around the footprint";
+      const bool is_sampled = std::any_of(quest.legs().begin(), quest.legs().end(),
+                                          [](const PoseRoute& leg) { return leg.means != PoseMeans::kGuided; });
+      if (is_sampled && area_->costs().has_any()) {
+        plan.message += "; it was hard to find, and what zones cost is hardly heeded";
+      }
     }
   }
   plan.steps = steps;

@@ -79,14 +79,18 @@ class PosePlanner {
   };
   /// Around the footprint, on the terrain as it is now.
   [[nodiscard]] Room room(std::span<const Pose> poses);
+  /// The way of the reference point, metres, where zones ask for it so many times more.
+  [[nodiscard]] double cost(std::span<const Pose> poses);
 
   [[nodiscard]] const Body& body() const { return body_; }
   /// That it keeps.
   [[nodiscard]] std::int64_t cells() const;
+  /// Cells that were laid out so far: what it took.
+  [[nodiscard]] std::int64_t made() const { return made_; }
 
  private:
   void lay_out();
-  [[nodiscard]] std::uint64_t passable(BrickIndex column) const { return terrain_.at(column).passable; }
+  [[nodiscard]] ColumnFloor floor_of(BrickIndex column) const;
   [[nodiscard]] std::optional<std::string> fault(std::span<const Pose> poses) const;
   [[nodiscard]] PosePlan refusal_of(const PoseQuest& quest) const;
 
@@ -95,7 +99,8 @@ class PosePlanner {
   std::set<BrickIndex> touched_;
   std::unique_ptr<PoseArea> area_;      ///< what the validator looks at; none while it is not worked out, or too large
   std::shared_ptr<PoseGround> ground_;  ///< what searches look at, in whatever thread: left alone but by `begin`
-  std::vector<ColumnPlane> changed_;    ///< of the area, that the ground has not been told of
+  std::vector<ColumnFloor> changed_;    ///< of the area, that the ground has not been told of
+  std::int64_t made_ = 0;
 };
 
 }  // namespace concord

@@ -15,10 +15,22 @@ std::shared_ptr<PosePlanner> PosePlanners::at(const std::string& robot, const Bo
   for (const Kept& kept : kept_) cells += kept.planner->cells();
   while (!kept_.empty() && (kept_.size() >= kMaxKept || cells > kMaxKeptCells)) {
     cells -= kept_.front().planner->cells();
+    made_ += kept_.front().planner->made();
     kept_.erase(kept_.begin());
   }
   kept_.push_back({robot, std::make_shared<PosePlanner>(terrain_, body)});
   return kept_.back().planner;
+}
+
+void PosePlanners::clear() {
+  made_ = made();
+  kept_.clear();
+}
+
+std::int64_t PosePlanners::made() const {
+  std::int64_t sum = made_;
+  for (const Kept& kept : kept_) sum += kept.planner->made();
+  return sum;
 }
 
 void PosePlanners::follow(std::span<const BrickIndex> columns) {

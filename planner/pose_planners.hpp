@@ -12,7 +12,7 @@ namespace concord {
 /// The pose planners that were asked for of late, one for each robot: to each the others are obstacles.
 class PosePlanners {
  public:
-  static constexpr std::size_t kMaxKept = 16;
+  static constexpr std::size_t kMaxKept = 256;
   /// Of all that are kept, beyond the last.
   static constexpr std::int64_t kMaxKeptCells = 24'000'000;
 
@@ -22,7 +22,9 @@ class PosePlanners {
   [[nodiscard]] std::shared_ptr<PosePlanner> at(const std::string& robot, const Body& body);
   void follow(std::span<const BrickIndex> columns);
   /// Anything may have changed.
-  void clear() { kept_.clear(); }
+  void clear();
+  /// Cells that they have laid out so far: what it took.
+  [[nodiscard]] std::int64_t made() const;
 
  private:
   struct Kept {
@@ -32,6 +34,7 @@ class PosePlanners {
 
   Terrain terrain_;
   std::vector<Kept> kept_;  ///< the last that was asked for comes last
+  std::int64_t made_ = 0;   ///< by those that are not kept any longer
 };
 
 }  // namespace concord

@@ -4,14 +4,22 @@
 #include <new>
 
 namespace concord {
+namespace {
+
+/// Of all legs, beyond the last: others wait meanwhile. As many as two take that find nothing.
+constexpr std::int64_t kMostSteps = 170'000;
+
+}  // namespace
 
 PoseArea::PoseArea(BrickIndex low, BrickIndex high)
-    : low_(low), high_(high), open_(8 * (high.x - low.x + 1), 8 * (high.y - low.y + 1)) {}
+    : low_(low), high_(high), open_(8 * (high.x - low.x + 1), 8 * (high.y - low.y + 1)), costs_(open_) {}
 
-Window PoseArea::set(BrickIndex column, std::uint64_t passable) {
-  const Cell corner{(column.x - low_.x) * 8, (column.y - low_.y) * 8};
+Window PoseArea::set(const ColumnFloor& floor) {
+  const Cell corner{(floor.column.x - low_.x) * 8, (floor.column.y - low_.y) * 8};
   for (int local = 0; local < 64; ++local) {
-    open_.set({corner.x + (local & 7), corner.y + (local >> 3)}, (passable >> local & 1) != 0);
+    const Cell cell{corner.x + (local & 7), corner.y + (local >> 3)};
+    open_.set(cell, (floor.passable >> local & 1) != 0);
+    costs_.set(cell, floor.costs[static_cast<std::size_t>(local)]);
   }
   return {corner, {corner.x + 7, corner.y + 7}};
 }
@@ -22,13 +30,14 @@ PoseQuest::PoseQuest(std::shared_ptr<PoseGround> ground, const Pose& start, std:
 
 /// What changed before the search is made is in the area when it is made.
 void PoseQuest::catch_up() {
-  for (const ColumnPlane& column : ground_->changed) {
-    const Window window = ground_->area.set(column.column, column.cells);
+  for (const ColumnFloor& floor : ground_->changed) {
+    const Window window = ground_->area.set(floor);
     if (ground_->search) ground_->search->update(window);
   }
   ground_->changed.clear();
   if (ground_->search) return;
-  ground_->search = std::make_unique<PoseSearch>(ground_->area.open(), ground_->footprint, ground_->turn_radius);
+  ground_->search = std::make_unique<PoseSearch>(ground_->area.open(), ground_->footprint, ground_->turn_radius,
+                                                 &ground_->area.costs());
 }
 
 Pose PoseQuest::in_cells(const Pose& pose) const { return {pose.p / resolution_ - corner(), pose.yaw}; }
@@ -64,9 +73,12 @@ void PoseQuest::search(const std::function<bool()>& stop) {
   catch_up();
   PoseEffort effort;
   effort.stop = [&] { return withdrawn_ || (stop && stop()); };
+  std::int64_t steps = 0;
   for (std::size_t i = 0; i < targets_.size(); ++i) {
     const Pose to = place(i);
-    legs_.push_back(ground_->search->find(in_cells(places_.back()), in_cells(to), effort));
+    legs_.push_back(steps < kMostSteps ? ground_->search->find(in_cells(places_.back()), in_cells(to), effort)
+                                       : PoseRoute{PoseOutcome::kGaveUp, PoseMeans::kNone, {}, 0, steps});
+    steps += legs_.back().steps;
     places_.push_back(to);
     // A short leg may be found without the effort's ever being asked about.
     if (legs_.back().outcome == PoseOutcome::kFound && effort.stop()) legs_.back().outcome = PoseOutcome::kStopped;

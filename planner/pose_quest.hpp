@@ -11,6 +11,13 @@
 
 namespace concord {
 
+/// What the cells of a column of bricks are to a robot with a footprint; bit x + 8 y.
+struct ColumnFloor {
+  BrickIndex column;
+  std::uint64_t passable;
+  ColumnCosts costs;
+};
+
 /// A rectangle of columns of bricks as cells that a robot may be over, in a grid of its own.
 class PoseArea {
  public:
@@ -20,16 +27,18 @@ class PoseArea {
   [[nodiscard]] bool holds(BrickIndex column) const {
     return column.x >= low_.x && column.y >= low_.y && column.x <= high_.x && column.y <= high_.y;
   }
-  /// Bit x + 8 y. @pre it holds the column. Returns the cells of the grid that it lies in.
-  Window set(BrickIndex column, std::uint64_t passable);
+  /// @pre it holds the column. Returns the cells of the grid that it lies in.
+  Window set(const ColumnFloor& floor);
 
   [[nodiscard]] const OpenGrid& open() const { return open_; }
+  [[nodiscard]] const ExtraCosts& costs() const { return costs_; }
   /// Of the grid, in cells of the map.
   [[nodiscard]] Eigen::Vector2d corner() const { return {8.0 * low_.x, 8.0 * low_.y}; }
 
  private:
   BrickIndex low_, high_;
   OpenGrid open_;
+  ExtraCosts costs_;
 };
 
 /// Where a robot is to come by, and how it is to point there; any yaw: one of several, the nearest to the way there
@@ -44,7 +53,7 @@ struct PoseGround {
   PoseArea area;
   Footprint footprint;                 ///< cells
   double turn_radius;                  ///< cells
-  std::vector<ColumnPlane> changed;    ///< that the area has not followed yet
+  std::vector<ColumnFloor> changed;    ///< that the area has not followed yet
   std::unique_ptr<PoseSearch> search;  ///< none before the first run
 };
 

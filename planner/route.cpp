@@ -36,7 +36,7 @@ Route::Found Route::failed(std::size_t leg, Finding finding) const {
       finding.reason = Reason::kWaypointUnreachable;
     }
   }
-  return {std::move(finding), {static_cast<std::int32_t>(leg)}};
+  return {std::move(finding), {static_cast<std::int32_t>(leg)}, false};
 }
 
 std::optional<Route::Found> Route::find(const RobotTask& task, std::int64_t effort) {
@@ -62,6 +62,7 @@ Route::Found Route::joined(bool is_kept) const {
   found.way.expanded = expanded_;
   found.way.is_kept = is_kept;
   for (std::size_t leg = first_; leg < ways_.size(); ++leg) {
+    found.is_fast = found.is_fast || legs_[leg].is_fast();
     for (std::size_t i = leg == first_ ? 0 : 1; i < ways_[leg].size(); ++i) {
       found.way.points.push_back(ways_[leg][i]);
       found.legs.push_back(static_cast<std::int32_t>(leg));

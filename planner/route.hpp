@@ -15,7 +15,8 @@ class Route {
   struct Found {
     Finding way;  ///< of all legs; or of the one that fails
     std::vector<std::int32_t>
-        legs;  ///< of each point, the leg that ends there or beyond; of a failure, the one that fails
+        legs;              ///< of each point, the leg that ends there or beyond; of a failure, the one that fails
+    bool is_fast = false;  ///< any leg is
   };
 
   /// From scratch, as far as looking at about `effort` cells gets; call it again for the rest. That there is no way is

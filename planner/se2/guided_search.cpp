@@ -15,8 +15,8 @@ constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 class AlongGuide {
  public:
-  AlongGuide(const Guide& guide, const StandingRoom& room, const Steering& steering)
-      : guide_(guide), room_(room), steering_(steering), cost_(room) {
+  AlongGuide(const Guide& guide, const StandingRoom& room, const Steering& steering, const MotionCost& cost)
+      : guide_(guide), room_(room), steering_(steering), cost_(cost) {
     for (std::size_t stop = 0; stop < guide.stops.size(); ++stop) {
       first_.push_back(static_cast<std::uint32_t>(nodes_.size()));
       for (const Pose& pose : guide.stops[stop]) nodes_.push_back({pose, stop});
@@ -102,7 +102,7 @@ class AlongGuide {
   const Guide& guide_;
   const StandingRoom& room_;
   const Steering& steering_;
-  MotionCost cost_;
+  const MotionCost& cost_;
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> first_;  ///< by stop, and one more
   std::priority_queue<Entry> open_;
@@ -112,8 +112,8 @@ class AlongGuide {
 }  // namespace
 
 FoundMotions search_along(const Guide& guide, const StandingRoom& room, const Steering& steering,
-                          const SearchEffort& effort) {
-  return AlongGuide(guide, room, steering).find(effort);
+                          const MotionCost& cost, const SearchEffort& effort) {
+  return AlongGuide(guide, room, steering, cost).find(effort);
 }
 
 }  // namespace concord

@@ -24,6 +24,6 @@ struct FoundMotions {
 /// A* over a guide's poses, joined by what `steering` makes of two; a motion is checked when the search comes to it.
 /// Ties go to what was found first.
 [[nodiscard]] FoundMotions search_along(const Guide& guide, const StandingRoom& room, const Steering& steering,
-                                        const SearchEffort& effort);
+                                        const MotionCost& cost, const SearchEffort& effort);
 
 }  // namespace concord

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "planner/footprint/standing_room.hpp"
+#include "planner/search/extra_costs.hpp"
 
 namespace concord {
 
@@ -31,8 +32,8 @@ void for_each_move(const Motion& motion, Take take) {
 /// Whether the robot has room all along, its end too.
 [[nodiscard]] bool has_room(const StandingRoom& room, const Motion& motion);
 
-/// What motions cost: the way, more of it near what is blocked, going back and changing between ahead and back, turns
-/// in place. In cells.
+/// What motions cost: the way, more of it near what is blocked and where zones ask for it, going back and changing
+/// between ahead and back, turns in place. In cells.
 class MotionCost {
  public:
   static constexpr double kBack = 1.5;
@@ -40,8 +41,9 @@ class MotionCost {
   static constexpr double kChange = 0.5;  ///< of the footprint's radius
   static constexpr double kTurn = 0.5;    ///< of the footprint's radius for each radian in place
 
-  /// `room` must outlive this.
-  explicit MotionCost(const StandingRoom& room);
+  /// `room` must outlive this, and so must `extra`: what it costs besides to have the reference point in a cell. Null:
+  /// nothing does.
+  explicit MotionCost(const StandingRoom& room, const ExtraCosts* extra = nullptr);
 
   [[nodiscard]] double operator()(const Motion& motion) const;
 
@@ -49,6 +51,7 @@ class MotionCost {
   [[nodiscard]] double factor(const Eigen::Vector2d& p) const;
 
   const StandingRoom& room_;
+  const ExtraCosts* extra_;
   double radius_, far_;
 };
 

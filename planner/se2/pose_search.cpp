@@ -58,12 +58,26 @@ std::vector<Pose> without_flat(const std::vector<Pose>& poses) {
 
 }  // namespace
 
-PoseSearch::PoseSearch(const OpenGrid& grid, const Footprint& footprint, double turn_radius)
-    : grid_(grid), field_(grid, reach_for(footprint)), room_(grid, field_, footprint), steering_(turn_radius) {
+PoseSearch::PoseSearch(const OpenGrid& grid, const Footprint& footprint, double turn_radius, const ExtraCosts* extra)
+    : grid_(grid),
+      extra_(extra),
+      field_(grid, reach_for(footprint)),
+      room_(grid, field_, footprint),
+      cost_(room_, extra),
+      steering_(turn_radius) {
+  const Window all{{0, 0}, {grid.width() - 1, grid.height() - 1}};
   OpenGrid possible(grid.width(), grid.height());
-  open_cells(possible, {{0, 0}, {grid.width() - 1, grid.height() - 1}});
+  open_cells(possible, all);
   ways_ = std::make_unique<GridPaths>(std::move(possible), margin_for(footprint));
   ways_->prepare_clear();
+  take_extra(all);
+}
+
+void PoseSearch::take_extra(const Window& window) {
+  if (extra_ == nullptr || !extra_->has_any()) return;
+  for (int y = window.low.y; y <= window.high.y; ++y) {
+    for (int x = window.low.x; x <= window.high.x; ++x) (void)ways_->set_extra({x, y}, extra_->at({x, y}));
+  }
 }
 
 void PoseSearch::open_cells(OpenGrid& to, const Window& window) const {
@@ -84,6 +98,7 @@ void PoseSearch::update(const Window& window) {
       {std::max(0, window.low.x - reach), std::max(0, window.low.y - reach)},
       {std::min(grid_.width() - 1, window.high.x + reach), std::min(grid_.height() - 1, window.high.y + reach)}};
   ways_->update(wide, [&](OpenGrid& ways) { open_cells(ways, wide); });
+  take_extra(window);
 }
 
 std::optional<std::vector<Cell>> PoseSearch::grid_path(Cell start, Cell goal, const PoseEffort& effort) {
@@ -111,6 +126,7 @@ std::optional<std::vector<Cell>> PoseSearch::grid_path(Cell start, Cell goal, co
     });
     auto detour = ways_->clear(start, goal, limits);
     if (!detour) break;
+    limits.expanded -= detour->expanded;
     path = std::move(detour);
   }
   for (const Window& window : closed) {
@@ -140,7 +156,7 @@ FoundMotions PoseSearch::search(const std::vector<Cell>& cells, const Pose& star
   };
   for (const GuideDensity& density : kDensities) {
     const Guide guide = make_guide(room_, cells, start, goal, density);
-    FoundMotions found = search_along(guide, room_, steering_, {effort.guided, effort.stop});
+    FoundMotions found = search_along(guide, room_, steering_, cost_, {effort.guided, effort.stop});
     if (is_over(found, PoseMeans::kGuided)) return found;
   }
   const SampleRegion corridor{cells, 2 * room_.footprint().circumscribed()};
@@ -165,7 +181,7 @@ PoseRoute PoseSearch::find(const Pose& start, const Pose& goal, const PoseEffort
   if (!cells) return route;
   FoundMotions found = search(*cells, start, goal, effort, route);
   if (!found.stopped && found.motions.empty()) return route;
-  if (!found.stopped) found = shorten(found.motions, room_, steering_, {effort.shortening, effort.stop});
+  if (!found.stopped) found = shorten(found.motions, room_, steering_, cost_, {effort.shortening, effort.stop});
   if (found.stopped) {
     route.outcome = PoseOutcome::kStopped;
     return route;

@@ -15,7 +15,7 @@ struct PoseEffort {
   std::int64_t corridor = 4'000;   ///< samples around it
   std::int64_t anywhere = 20'000;  ///< samples wherever the grid leads
   std::int64_t shortening = 4'000;
-  std::int64_t cells = 4'000'000;  ///< of the grid path
+  std::int64_t cells = 4'000'000;  ///< of the grid path, and as many of all ways round places too narrow for it
   /// Asked again and again. Once it says yes there is no result: for whoever withdrew the request, or watches the
   /// clock.
   std::function<bool()> stop = [] { return false; };
@@ -53,12 +53,13 @@ struct PoseRoute {
 class PoseSearch {
  public:
   /// Works out what depends on the grid alone. Footprint and turn radius (0: turns in place) in cells. `grid` must
-  /// outlive this and change only along with `update`.
-  PoseSearch(const OpenGrid& grid, const Footprint& footprint, double turn_radius);
+  /// outlive this and change only along with `update`; so must `extra`, what it costs besides to be in a cell (null:
+  /// nothing), which is not heeded where only samples find a way.
+  PoseSearch(const OpenGrid& grid, const Footprint& footprint, double turn_radius, const ExtraCosts* extra = nullptr);
   PoseSearch(const PoseSearch&) = delete;
   PoseSearch& operator=(const PoseSearch&) = delete;
 
-  /// Cells in `window` have changed.
+  /// Cells in `window` have changed, or what it costs to be in them.
   void update(const Window& window);
 
   /// Any input is answered. Poses in cells.
@@ -69,6 +70,7 @@ class PoseSearch {
  private:
   /// Of `window`, which must lie on the grid: whether the footprint's inner disc may be anywhere in a cell.
   void open_cells(OpenGrid& to, const Window& window) const;
+  void take_extra(const Window& window);
   /// Cells that keep away from walls, past places that the footprint does not fit into where there is a way round.
   [[nodiscard]] std::optional<std::vector<Cell>> grid_path(Cell start, Cell goal, const PoseEffort& effort);
   [[nodiscard]] SampleRegion anywhere(Cell from);
@@ -76,8 +78,10 @@ class PoseSearch {
                                     const PoseEffort& effort, PoseRoute& route);
 
   const OpenGrid& grid_;
+  const ExtraCosts* extra_;
   DistanceField field_;
   StandingRoom room_;
+  MotionCost cost_;
   Steering steering_;
   std::unique_ptr<GridPaths> ways_;
 };

@@ -26,8 +26,9 @@ void append_parts(const Motion& motion, double length, std::vector<Motion>& part
 
 class Shortener {
  public:
-  Shortener(const std::vector<Motion>& motions, const StandingRoom& room, const Steering& steering)
-      : room_(room), steering_(steering), cost_(room), part_length_(room.footprint().circumscribed()) {
+  Shortener(const std::vector<Motion>& motions, const StandingRoom& room, const Steering& steering,
+            const MotionCost& cost)
+      : room_(room), steering_(steering), cost_(cost), part_length_(room.footprint().circumscribed()) {
     for (const Motion& motion : motions) append_parts(motion, part_length_, parts_);
   }
 
@@ -84,7 +85,7 @@ class Shortener {
 
   const StandingRoom& room_;
   const Steering& steering_;
-  MotionCost cost_;
+  const MotionCost& cost_;
   double part_length_;
   std::vector<Motion> parts_;
   std::vector<double> costs_;  ///< by part
@@ -93,8 +94,8 @@ class Shortener {
 }  // namespace
 
 FoundMotions shorten(const std::vector<Motion>& motions, const StandingRoom& room, const Steering& steering,
-                     const SearchEffort& effort) {
-  return Shortener(motions, room, steering).run(effort);
+                     const MotionCost& cost, const SearchEffort& effort) {
+  return Shortener(motions, room, steering, cost).run(effort);
 }
 
 }  // namespace concord

@@ -20,6 +20,7 @@ struct ClearPath {
   std::vector<Cell> cells;  ///< as they were found, each a neighbour of the one before
   std::vector<Cell> turns;  ///< straight lines between cell centres that touch open cells only
   std::int64_t expanded = 0;
+  bool is_fast = false;            ///< not looked for away from anything: see GridPaths::clear_or_fast
   std::vector<std::int64_t> sums;  ///< by cell, what the path costs so far
   std::vector<std::size_t> at;     ///< by turn, which cell it is
 };

@@ -104,7 +104,9 @@ std::optional<ClearPath> GridPaths::clear_or_fast(Cell start, Cell goal, std::in
   if (auto path = clear(start, goal, {.expanded = most_expanded})) return path;
   const auto shortest = fast(start, goal);
   if (!shortest) return std::nullopt;
-  return clearance_->shorten(cells_of(shortest->turns));
+  ClearPath path = clearance_->shorten(cells_of(shortest->turns));
+  path.is_fast = true;
+  return path;
 }
 
 std::vector<bool> GridPaths::cells(const Window& window) const {

@@ -68,7 +68,9 @@ void KeptPath::begin_at(std::size_t first) {
   std::vector<Cell> cells(path_->cells.begin() + static_cast<std::ptrdiff_t>(first), path_->cells.end());
   start_ = cells.front();
   cost_ -= std::min(cost_, path_->sums[first]);
+  const bool is_fast = path_->is_fast;
   path_ = paths_->clearance().shorten(std::move(cells));
+  path_->is_fast = is_fast;
 }
 
 KeptPath::Outcome KeptPath::follow(const Window& window, bool opened) {
@@ -156,7 +158,9 @@ bool KeptPath::repair(const Stretch& stretch, const Window& window) {
   std::vector<Cell> whole(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(from));
   whole.insert(whole.end(), between->cells.begin(), between->cells.end());
   whole.insert(whole.end(), cells.begin() + static_cast<std::ptrdiff_t>(to) + 1, cells.end());
+  const bool is_fast = path_->is_fast;
   path_ = paths_->clearance().shorten_again(std::move(whole), *path_, from, to, grown(window, paths_->field().reach()));
+  path_->is_fast = is_fast;
   return true;
 }
 

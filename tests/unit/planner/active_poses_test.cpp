@@ -175,6 +175,90 @@ TEST_F(ActivePoses, WhatChangesWhileItIsLookedForIsHeeded) {
   EXPECT_TRUE(is_valid(*replies[0].path));
 }
 
+TEST_F(ActivePoses, AWayThatOpensWhileItIsLookedForIsFound) {
+  const Rows closed = with_box(with_box(two_rooms(), {40, 6}, {40, 13}, '#'), {40, 34}, {40, 41}, '#');
+  show(closed);
+  planner_.serve(now());
+  ASSERT_FALSE(planner_.request(across("p1"), fork_lift(), now()).path);
+  const auto quest = planner_.next_quest();
+  ASSERT_NE(quest, nullptr);
+  quest->run();
+  ASSERT_EQ(quest->legs().back().outcome, PoseOutcome::kNoWay);
+  show(two_rooms());
+  EXPECT_TRUE(planner_.serve(now()).empty()) << "that there is none is not said of a map on which there is one";
+  search();
+  const auto replies = planner_.serve(now());
+  ASSERT_EQ(replies.size(), 1U);
+  EXPECT_EQ(replies[0].path->status, "OK") << replies[0].path->message;
+  EXPECT_TRUE(is_valid(*replies[0].path));
+}
+
+TEST_F(ActivePoses, ARobotThatStandsStillGoesFirstButNotAlways) {
+  show(two_rooms());
+  const auto of = [&](const std::string& robot) {
+    PathRequest request = across(robot + "'s");
+    request.robot = robot;
+    return request;
+  };
+  ASSERT_EQ(ask(of("kept1"), fork_lift()).status, "OK");
+  ASSERT_EQ(ask(of("kept2"), fork_lift()).status, "OK");
+  planner_.serve(now());
+  for (const char* robot : {"new1", "new2"}) {
+    PathRequest request = of(robot);
+    request.start->y() = robot == std::string("new1") ? 3.1 : 3.2;
+    ASSERT_FALSE(planner_.request(request, fork_lift(), now()).path);
+  }
+  show(with_box(two_rooms(), {40, 6}, {40, 13}, '#'));
+  ASSERT_EQ(replan().size(), 2U);
+  std::vector<double> order;
+  while (const auto quest = planner_.next_quest()) {
+    order.push_back(quest->places().front().p.y());
+    quest->run();
+  }
+  EXPECT_EQ(order, (std::vector<double>{2.5, 3.1, 2.5, 3.2}));
+}
+
+TEST_F(ActivePoses, ZonesThatCostLeadThroughTheOtherDoorAlsoWhenTheyComeLater) {
+  show(two_rooms());
+  const auto highest = [](const Path& path) {
+    double most = 0;
+    for (const Eigen::Vector3d& p : path.points) most = std::max(most, p.y());
+    return most;
+  };
+  const Path first = ask(across("p1"), fork_lift());
+  ASSERT_EQ(first.status, "OK");
+  EXPECT_LT(highest(first), 5);
+  planner_.set_zones(std::vector<Zone>{test::costly("beside", {1, 8}, {4, 11}, 15)});
+  EXPECT_TRUE(replan().empty()) << "not on its way";
+  planner_.set_zones(std::vector<Zone>{test::costly("wet floor", {8, 0}, {12, 6}, 15)});
+  std::vector<Path> said = replan();
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_EQ(said[0].status, "REPLANNING");
+  search();
+  said = replan();
+  ASSERT_EQ(said.size(), 1U);
+  ASSERT_EQ(said[0].status, "OK") << said[0].message;
+  EXPECT_GT(highest(said[0]), 8.5) << "by the other door";
+  EXPECT_TRUE(is_valid(said[0]));
+  // A corridor forces another robot through the lower door.
+  planner_.set_zones(std::vector<Zone>{test::corridor("a", {1, 0}, {6, 11}), test::corridor("b", {1, 8.6}, {18, 11}),
+                                       test::corridor("c", {14, 0}, {18, 11})});
+  PathRequest request = across("p2");
+  request.robot = "robot2";
+  const Path forced = ask(request, fork_lift());
+  ASSERT_EQ(forced.status, "OK") << forced.message;
+  EXPECT_GT(highest(forced), 8.5);
+  // Where all is dear the path is found, and stays.
+  planner_.set_zones(std::vector<Zone>{test::costly("all", {0, 0}, {20, 12}, 15)});
+  (void)replan();
+  search();
+  (void)replan();
+  utime_ += kSecond;
+  EXPECT_TRUE(replan().empty());
+  EXPECT_EQ(planner_.next_quest(), nullptr) << "nothing is looked for again and again";
+  for (const Path& path : planner_.kept()) EXPECT_EQ(path.status, "OK");
+}
+
 TEST_F(ActivePoses, CancelEndsASearchThatIsUnderWayAndOneThatWaits) {
   show(two_rooms());
   planner_.serve(now());

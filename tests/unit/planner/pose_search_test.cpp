@@ -153,12 +153,17 @@ TEST(PoseSearch, AfterChangesItIsAsIfItWereNew) {
     Plain plain = rooms(random, 50, 40, 9);
     OpenGrid grid = test::to_grid(plain);
     const Footprint footprint = test::random_footprint(random, 1, 3);
-    PoseSearch search(grid, footprint, 2);
+    ExtraCosts extra(grid);
+    PoseSearch search(grid, footprint, 2, &extra);
     for (int i = 0; i < 6; ++i) {
-      search.update(test::random_change(random, plain, grid));
+      const Window window = test::random_change(random, plain, grid);
+      for (int y = window.low.y; y <= window.high.y; ++y) {
+        for (int x = window.low.x; x <= window.high.x; ++x) extra.set({x, y}, static_cast<int>(random() % 16));
+      }
+      search.update(window);
       const Pose start = any_pose(random, plain), goal = any_pose(random, plain);
       const PoseRoute kept = search.find(start, goal, little());
-      const PoseRoute anew = PoseSearch(grid, footprint, 2).find(start, goal, little());
+      const PoseRoute anew = PoseSearch(grid, footprint, 2, &extra).find(start, goal, little());
       ASSERT_EQ(kept.outcome, anew.outcome) << seed;
       ASSERT_EQ(kept.poses.size(), anew.poses.size()) << seed;
       for (std::size_t k = 0; k < kept.poses.size(); ++k) {
@@ -190,6 +195,53 @@ TEST(PoseSearch, FitsThroughWhatIsAsWideAsItself) {
       ASSERT_EQ(route.outcome, PoseOutcome::kFound) << wide << ", " << turn_radius;
       EXPECT_EQ(fault(grid, footprint, turn_radius, route.poses), std::nullopt);
     }
+  }
+}
+
+/// Two halls and two doors of 12 cells between them.
+Plain two_doors() {
+  Plain plain = test::all_open(90, 61);
+  for (int y = 0; y < 61; ++y) {
+    const bool is_door = (y >= 8 && y < 20) || (y >= 41 && y < 53);
+    if (!is_door) plain.set(45, y, false);
+  }
+  return plain;
+}
+
+double highest_at_wall(const PoseRoute& route) {
+  double highest = 0;
+  for (const Pose& pose : route.poses) {
+    if (std::abs(pose.p.x() - 45) < 12) highest = std::max(highest, pose.p.y());
+  }
+  return highest;
+}
+
+TEST(PoseSearch, GoesRoundWhatIsDearAndThroughWhereThereIsNoOtherWay) {
+  const Plain plain = two_doors();
+  const OpenGrid grid = test::to_grid(plain);
+  const Footprint footprint = *make_rectangle(10, 6);
+  const Pose start{{15, 14}, 0}, goal{{75, 14}, 0};
+  for (const double turn_radius : {0.0, 4.0}) {
+    ExtraCosts extra(grid);
+    const auto find = [&] {
+      PoseRoute route = PoseSearch(grid, footprint, turn_radius * kChordRadius, &extra).find(start, goal);
+      EXPECT_EQ(route.outcome, PoseOutcome::kFound);
+      EXPECT_EQ(route.means, PoseMeans::kGuided);
+      EXPECT_EQ(fault(grid, footprint, turn_radius, route.poses), std::nullopt);
+      return route;
+    };
+    EXPECT_LT(highest_at_wall(find()), 20);
+    const auto set_box = [&](Cell low, Cell high, int cost) {
+      for (int y = low.y; y <= high.y; ++y) {
+        for (int x = low.x; x <= high.x; ++x) extra.set({x, y}, cost);
+      }
+    };
+    set_box({38, 0}, {52, 25}, 15);
+    EXPECT_GT(highest_at_wall(find()), 40) << "by the other door";
+    set_box({38, 0}, {52, 25}, 1);
+    EXPECT_LT(highest_at_wall(find()), 20) << "a little is no reason for a detour";
+    set_box({38, 0}, {52, 60}, 15);
+    EXPECT_LT(highest_at_wall(find()), 20) << "dear everywhere: the shorter way";
   }
 }
 

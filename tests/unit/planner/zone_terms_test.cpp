@@ -17,20 +17,6 @@ using Rows = std::vector<std::string>;
 const Band kBand = make_band(0, 1, 1.0).value();
 const Rows kHall(30, std::string(60, '.'));
 
-Zone costly(const std::string& name, Eigen::Vector2d min, Eigen::Vector2d max, int cost, double margin = 0) {
-  Zone zone = test::no_go(name, min, max);
-  zone.kind = Zone::Kind::kCostly;
-  zone.cost = cost;
-  zone.margin = margin;
-  return zone;
-}
-
-Zone corridor(const std::string& name, Eigen::Vector2d min, Eigen::Vector2d max) {
-  Zone zone = test::no_go(name, min, max);
-  zone.kind = Zone::Kind::kCorridor;
-  return zone;
-}
-
 ZoneLayer layer_of(const std::vector<Zone>& zones) {
   ZoneLayer layer(1.0, kBand);
   layer.set(zones);
@@ -97,7 +83,7 @@ TEST(CostlyZone, IsGoneRoundWhereThatIsCheaperAndThroughWhereItIsNot) {
   const Grid grid = test::sketch(kHall);
   const Eigen::Vector2d from(5, 14.5), to(55, 14.5);
   const auto with = [&](int cost, double margin) {
-    return plan({grid, layer_of({costly("wet floor", {25, 9}, {35, 17.9}, cost, margin)})}, from, to, 0.4);
+    return plan({grid, layer_of({test::costly("wet floor", {25, 9}, {35, 17.9}, cost, margin)})}, from, to, 0.4);
   };
   const PlanResult cheap = with(1, 0), dear = with(15, 0);
   ASSERT_EQ(dear.reason, Reason::kOk) << dear.message;
@@ -106,7 +92,7 @@ TEST(CostlyZone, IsGoneRoundWhereThatIsCheaperAndThroughWhereItIsNot) {
   ASSERT_EQ(cheap.reason, Reason::kOk);
   EXPECT_GT(highest(with(15, 3)), highest(dear) + 2) << "its margin, too";
   // Where there is no other way, it is gone through.
-  const PlanResult through = plan({grid, layer_of({costly("gate", {25, -5}, {35, 40}, 15)})}, from, to, 0.4);
+  const PlanResult through = plan({grid, layer_of({test::costly("gate", {25, -5}, {35, 40}, 15)})}, from, to, 0.4);
   ASSERT_EQ(through.reason, Reason::kOk);
   EXPECT_LT(through.length, 51);
 }
@@ -116,8 +102,8 @@ TEST(Corridors, ForceAPath) {
   const Eigen::Vector2d from(8, 4), to(50, 4);
   EXPECT_LT(plan(grid, from, to, 0.4).length, 46);
   // Up, across and down again, five metres wide.
-  const std::vector<Zone> zones{corridor("a", {6, 2}, {11, 25}), corridor("b", {6, 20}, {53, 25}),
-                                corridor("c", {48, 2}, {53, 25})};
+  const std::vector<Zone> zones{test::corridor("a", {6, 2}, {11, 25}), test::corridor("b", {6, 20}, {53, 25}),
+                                test::corridor("c", {48, 2}, {53, 25})};
   const PlanResult forced = plan({grid, layer_of(zones)}, from, to, 0.4);
   ASSERT_EQ(forced.reason, Reason::kOk) << forced.message;
   EXPECT_GT(forced.length, 60);
@@ -191,7 +177,7 @@ TEST(Costs, OfAZoneThatComesTurnAKeptPathAside) {
   planner.serve({1, 1'000'000});
   const auto reply = planner.request(request, {0.4}, {1, 1'000'000});
   ASSERT_TRUE(reply.path && reply.path->status == "OK");
-  const std::vector<Zone> zones{costly("wet floor", {25, 3}, {35, 26}, 15)};
+  const std::vector<Zone> zones{test::costly("wet floor", {25, 3}, {35, 26}, 15)};
   planner.set_zones(zones);
   planner.serve({2, 2'000'000});
   const std::vector<Path> aside = planner.replan({2, 2'000'000});
@@ -224,7 +210,7 @@ TEST(Costs, OfAZoneThatComesTurnAMovingRobotAside) {
   const auto reply = planner.request(request, {0.4}, {1, 1'000'000});
   ASSERT_TRUE(reply.path && reply.path->status == "OK");
   planner.set_pose("robot1", {9, 14.5});
-  planner.set_zones(std::vector<Zone>{costly("wet floor", {25, 9}, {35, 17.9}, 15)});
+  planner.set_zones(std::vector<Zone>{test::costly("wet floor", {25, 9}, {35, 17.9}, 15)});
   planner.serve({2, 2'000'000});
   const std::vector<Path> aside = planner.replan({2, 2'000'000});
   ASSERT_EQ(aside.size(), 1U);
@@ -233,7 +219,7 @@ TEST(Costs, OfAZoneThatComesTurnAMovingRobotAside) {
 }
 
 TEST(Costs, CorridorsOfAnotherStoreyAreNone) {
-  Zone upstairs = costly("upstairs", {5, 5}, {35, 10}, 0);
+  Zone upstairs = test::costly("upstairs", {5, 5}, {35, 10}, 0);
   upstairs.kind = Zone::Kind::kCorridor;
   upstairs.T_map_zone.translation().z() = 50;
   EXPECT_EQ(layer_of({upstairs}).costs({0, 0, 0}), ColumnCosts{});

@@ -26,6 +26,20 @@ inline Zone contact(const std::string& name, Eigen::Vector2d min, Eigen::Vector2
   return box_zone(name, Zone::Kind::kAllowContact, {min.x(), min.y(), 0}, {max.x(), max.y(), 2});
 }
 
+inline Zone costly(const std::string& name, Eigen::Vector2d min, Eigen::Vector2d max, int cost, double margin = 0) {
+  Zone zone = no_go(name, min, max);
+  zone.kind = Zone::Kind::kCostly;
+  zone.cost = cost;
+  zone.margin = margin;
+  return zone;
+}
+
+inline Zone corridor(const std::string& name, Eigen::Vector2d min, Eigen::Vector2d max) {
+  Zone zone = no_go(name, min, max);
+  zone.kind = Zone::Kind::kCorridor;
+  return zone;
+}
+
 /// Any kind, shape, place and tilt, within a field of `width` by `height` metres; some lie above or below the floor.
 inline Zone random_zone(std::mt19937& random, const std::string& name, double width, double height, double size) {
   std::uniform_real_distribution<double> share(0, 1);
