@@ -47,6 +47,18 @@ std::string zones_on(const RobotTask& task, FreeSpace& space, const std::vector<
   return names.size() > kNamed ? text + " and " + std::to_string(names.size() - kNamed) + " more" : text;
 }
 
+/// In how many stretches of the way its cells are closed.
+std::size_t closed_stretches(FreeSpace& space, const std::vector<Cell>& way) {
+  std::size_t count = 0;
+  bool was_open = true;
+  for (const Cell cell : way) {
+    const bool is_open = space.is_open(cell);
+    count += was_open && !is_open ? 1 : 0;
+    was_open = is_open;
+  }
+  return count;
+}
+
 std::string at_place(const Eigen::Vector2d& p) { return describe({"place", p, {}, {}, {}, {}, {}}); }
 
 }  // namespace
@@ -82,7 +94,11 @@ Finding what_closes(const RobotTask& task, const Eigen::Vector2d& from, const Ei
   if (task.terrain().grid().has_pinned()) {
     const std::vector<Cell> way = way_without(task, Ignoring::kPins, from, to);
     if (!way.empty()) {
-      blame(Reason::kBlockedByEdit, way, "an edit cuts the goal off; without it there is a way");
+      const std::size_t count = closed_stretches(space, way);
+      blame(Reason::kBlockedByEdit, way,
+            count < 2 ? "an edit cuts the goal off; without it there is a way"
+                      : "edits in " + std::to_string(count) +
+                            " places cut the goal off; without all of them there is a way: the first");
       return finding;
     }
   }

@@ -40,7 +40,7 @@ std::optional<Objection> Planner::objection(const Active& active) const {
                                               " hold no voxel, or are one band too many: see the site file"};
   }
   if (active.level->grid().cells().empty()) {
-    return Objection{Reason::kNoMap, "nothing has been observed in the height band yet"};
+    return Objection{Reason::kNoMap, "no map has arrived yet, or nothing has been observed in the height band"};
   }
   if (!has_zones_) {
     return Objection{Reason::kNoZones, "the no-go zones have not arrived from merge yet: ask again"};

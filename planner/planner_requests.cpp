@@ -86,7 +86,7 @@ std::optional<Path> Planner::name_edit(const std::string& robot, std::int64_t pa
   const auto it = active_.find(robot);
   if (it == active_.end() || it->second.path.path_id != path_id) return std::nullopt;
   it->second.path.edit_id = edit;
-  it->second.path.message += "; it is edit " + edit + (author.empty() ? "" : " by " + author);
+  it->second.path.message += "; there lies edit " + edit + (author.empty() ? "" : " by " + author);
   return it->second.path;
 }
 
@@ -100,6 +100,9 @@ Planner::Reply Planner::request(const PathRequest& request, const Robot& robot, 
     const auto footprint = Footprint::make(request.footprint);
     if (footprint) now.robot.body = Body{*footprint, request.turn_radius};
     if (!footprint) now.refused = Objection{Reason::kBadRequest, "the footprint: " + footprint.error().message};
+  }
+  if (now.robot.body && request.radius > 0) {
+    now.refused = Objection{Reason::kBadRequest, request.robot + " has a footprint: ask without a radius"};
   }
   if (now.robot.body) now.robot.radius = now.robot.body->footprint.circumscribed();
   now.level = level_for(robot);
@@ -238,6 +241,7 @@ std::vector<Path> Planner::repeat(const Moment& moment) {
     if (active.turn == 0) active.path.map_revision = moment.map_revision;
     active.said = moment.utime;
     paths.push_back(active.path);
+    if (is_stale_) paths.back().message += "; nothing was heard of the map for some seconds: it is as of then";
   }
   return paths;
 }

@@ -226,6 +226,14 @@ TEST_F(ActivePath, IsSaidOnceASecond) {
   EXPECT_TRUE(planner_.repeat(now()).empty());
   utime_ += 1;
   ++revision_;
+  planner_.set_stale(true);
+  utime_ += kSecond;
+  const std::vector<Path> stale = planner_.repeat(now());
+  ASSERT_EQ(stale.size(), 1U);
+  EXPECT_EQ(stale[0].status, "OK");
+  EXPECT_NE(stale[0].message.find("nothing was heard of the map"), std::string::npos) << stale[0].message;
+  planner_.set_stale(false);
+  utime_ += kSecond;
   const std::vector<Path> again = planner_.repeat(now());
   ASSERT_EQ(again.size(), 1U);
   EXPECT_TRUE(again[0].active);

@@ -352,6 +352,9 @@ TEST_F(ActivePoses, WhatCannotBeIsSaidClearly) {
   request = across("crossed");
   request.footprint = {{1, 1}, {-1, -1}, {1, -1}, {-1, 1}};
   EXPECT_EQ(status(request, {0.3}), "BAD_REQUEST");
+  request = across("radius");
+  request.radius = 0.3;
+  EXPECT_EQ(status(request, fork_lift()), "BAD_REQUEST") << "it is not a disc";
   request = across("many");
   request.waypoints.assign(1000, Eigen::Vector2d(5, 5));
   EXPECT_EQ(status(request, fork_lift()), "BAD_REQUEST");

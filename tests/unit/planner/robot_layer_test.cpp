@@ -186,18 +186,15 @@ TEST_F(RobotsOnTheGrid, EachHeightHasAGridOfItsOwn) {
 }
 
 TEST_F(RobotsOnTheGrid, WhatAnEditClosesIsBlamedOnIt) {
-  Rows rows = kCorridor;
-  show(rows);
-  BrickMap map;
-  for (int y = 0; y < 5; ++y) {
-    const VoxelIndex voxel{20, y, 0};
-    const Grid now_shown = test::sketch(rows);
+  show(kCorridor);
+  const auto close = [&](int x) {
     DenseBrick dense;
-    now_shown.cells().find(brick_of(voxel))->to_dense(dense);
-    for (int all = 0; all < 5; ++all) dense[local_of(VoxelIndex{20, all, 0})] = kPinnedOccupied;
-    planner_.set_brick(brick_of(voxel), Brick::from_dense(dense));
-  }
-  planner_.project();
+    test::sketch(kCorridor).cells().find(brick_of(VoxelIndex{x, 0, 0}))->to_dense(dense);
+    for (int y = 0; y < 5; ++y) dense[local_of(VoxelIndex{x, y, 0})] = kPinnedOccupied;
+    planner_.set_brick(brick_of(VoxelIndex{x, 0, 0}), Brick::from_dense(dense));
+    planner_.project();
+  };
+  close(20);
   planner_.set_pose("robot1", {4.5, 2.5}, 0.4);
   const Path path = ask("robot1", {50.5, 2.5});
   EXPECT_EQ(path.status, "BLOCKED_BY_EDIT") << path.message;
@@ -208,7 +205,13 @@ TEST_F(RobotsOnTheGrid, WhatAnEditClosesIsBlamedOnIt) {
   const auto named = planner_.name_edit("robot1", path.path_id, "e-1", "anna");
   ASSERT_TRUE(named);
   EXPECT_EQ(named->edit_id, "e-1");
+  EXPECT_NE(path.message.find("an edit cuts the goal off"), std::string::npos) << path.message;
   EXPECT_TRUE(replan().empty());
+  close(36);
+  const Path twice = ask("robot1", {50.5, 2.5});
+  EXPECT_EQ(twice.status, "BLOCKED_BY_EDIT");
+  EXPECT_NE(twice.message.find("edits in 2 places"), std::string::npos)
+      << "one of them alone opens nothing: " << twice.message;
 }
 
 }  // namespace
