@@ -2,7 +2,7 @@
 import { Color, Group, Matrix4, Vector3 } from "three";
 import type { App } from "../app";
 import type { Vec3 } from "../base/vec";
-import { inverse, kIdentity, poseFromXr } from "../base/vec";
+import { kIdentity, poseFromXr } from "../base/vec";
 import { kBackground } from "../scene/colours";
 import { vec } from "../scene/three_pose";
 import { MapAnchor, poseOfTransform } from "./map_anchor";
@@ -116,13 +116,13 @@ export class Immersive {
     const aligned = standing.state === "aligned";
     if (!this.session) {
       editor.blocked.set(null);
-      this.anchor.set(null);
+      this.anchor.stand(null, this.own.frameId.value);
       stage.setMapPose(kIdentity);
       stage.map.visible = true;
       return;
     }
     editor.blocked.set(blockedWords(standing));
-    if (standing.state !== "lost") this.anchor.set(aligned ? inverse(standing.T_map_own) : null);
+    this.anchor.stand(standing, this.own.frameId.value);
     stage.map.visible = aligned;
     if (aligned) layers.setCentre(this.head());
   }
