@@ -22,7 +22,12 @@ export class RoomUploader {
     private readonly news: News,
     /** Called when what was sent before counts no more: all meshes are to be sent again. */
     private readonly anew: () => void,
-  ) {}
+  ) {
+    // To a new session the server knows no look: what it is sent first must be the whole room, or it takes it that the rest is gone.
+    link.state.onChange((state) => {
+      if (state.state === "ready" && !state.hello.resumed) this.restart();
+    });
+  }
 
   /** Whether a look can be taken now. @param now milliseconds */
   due(now: number): boolean {
