@@ -140,3 +140,20 @@ test("a reset of the origin makes another frame, unaligned, with edits blocked a
   assert.deepEqual(errors, []);
   await page.close();
 });
+
+test("a room that somebody reset is scanned again in another frame, which is said before its first look", async () => {
+  const { page, errors } = await entered("office_small");
+  await page.waitForFunction(() => (window as unknown as HeadsetPage).concordImmersive.uploader.looks.value >= 1);
+  const first = await own(page);
+  const sent = server.uploads.length;
+  server.refuseNext("upload_mesh", "BAD_FRAME", "this frame was reset; begin another frame_id");
+  await words(page, "began anew");
+  await page.waitForFunction((n) => (window as unknown as HeadsetPage).concordImmersive.uploader.looks.value > n, sent + 1);
+  const { frameId } = await own(page);
+  assert.notEqual(frameId, first.frameId);
+  const again = server.uploads.slice(sent).find(({ sequence }) => sequence === 0)!;
+  assert(again.meshes > 0, "the room is sent again");
+  assert.equal(again.frameId, frameId);
+  assert.deepEqual(errors, []);
+  await page.close();
+});

@@ -28,8 +28,15 @@ class Bench {
       return refusal ? Promise.reject(new RefusedError(refusal)) : Promise.resolve({ sequence, occupied: 7 });
     },
   };
-  readonly uploader = new RoomUploader(this.link as unknown as Link, this.news, () => this.scan.forget());
+  readonly uploader = new RoomUploader(this.link as unknown as Link, this.news, () => this.scan.forget(), () => this.reset());
 
+  frames = 0;
+
+  /** As the immersive session does: the own frame becomes another. */
+  reset(): void {
+    ++this.frames;
+    this.uploader.restart();
+  }
   hello(resumed: boolean): void {
     this.state.set({ state: "ready", hello: { resumed } as HelloAnswer });
   }
@@ -53,4 +60,28 @@ test("to a new session the whole room is sent again, to one that goes on only wh
   bench.hello(false);
   await bench.look();
   assert.deepEqual(bench.uploads, [{ sequence: 0, meshes: 1 }, { sequence: 1, meshes: 0 }, { sequence: 2, meshes: 0 }, { sequence: 0, meshes: 1 }]);
+});
+
+test("a frame that the server takes no more becomes another, with one word to the person", async () => {
+  const bench = new Bench();
+  bench.hello(false);
+  await bench.look();
+  bench.refusals.push({ code: "BAD_FRAME", message: "this frame was reset", retry: false });
+  await bench.look();
+  assert.equal(bench.frames, 1);
+  assert.match(bench.news.latest.value!.text, /began anew/);
+  await bench.look();
+  await bench.look();
+  assert.equal(bench.frames, 1);
+  assert.deepEqual(bench.uploads.slice(2), [{ sequence: 0, meshes: 1 }, { sequence: 1, meshes: 0 }]);
+});
+
+test("a look that was under way when the frame became another is not sent in the new one", async () => {
+  const bench = new Bench();
+  bench.hello(false);
+  const look = bench.look();
+  bench.reset();
+  await look;
+  await bench.look();
+  assert.deepEqual(bench.uploads, [{ sequence: 0, meshes: 1 }]);
 });
