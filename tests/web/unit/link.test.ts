@@ -18,7 +18,9 @@ class FakeSocket implements Socket {
   send(data: string | Uint8Array): void {
     if (typeof data === "string") this.sent.push(JSON.parse(data) as Said);
   }
+  /** As in browsers, which throw at other codes. */
   close(code?: number): void {
+    assert(code === undefined || code === 1000 || (code >= 3000 && code < 5000), `close(${code})`);
     this.closedWith = code ?? 1005;
     this.onclose?.();
   }
@@ -150,9 +152,36 @@ test("credit is said again as frames are taken in, and a server that talks nonse
   assert.deepEqual(credits, [4_000_000, 4_000_000 + 2 * frame.length]);
   bench.socket.hear("nonsense");
   await turn();
-  assert.equal(bench.socket.closedWith, 1002);
+  assert.equal(bench.socket.closedWith, 4002);
   await turn();
   assert.equal(bench.link.state.value.state, "lost");
+});
+
+test("a page that fails at a message connects again and hears the next ones", async () => {
+  const bench = new Bench();
+  bench.link.connect();
+  await bench.enter();
+  const heard: string[] = [];
+  let failing = true;
+  bench.link.onEvent = ({ event }) => {
+    if (failing) throw new Error("a watcher failed");
+    heard.push(event);
+  };
+  const { error } = console;
+  console.error = (what: unknown) => void heard.push(String(what));
+  bench.socket.hear({ event: "people", body: { people: [] } });
+  await turn();
+  console.error = error;
+  assert.equal(bench.socket.closedWith, 4002);
+  await turn();
+  const now = bench.link.state.value;
+  assert(now.state === "lost" && now.why.includes("a watcher failed"));
+  failing = false;
+  bench.pass(500);
+  await bench.enter({ resumed: true });
+  bench.socket.hear({ event: "people", body: { people: [] } });
+  await turn();
+  assert.deepEqual(heard, ["Error: a watcher failed", "people"]);
 });
 
 test("a network that went silent is noticed", async () => {

@@ -7,7 +7,7 @@ import { answerTo, readText, TextError, type EventMessage, type ServerText } fro
 import { FrameError, readFrame, type CellsFrame, type PointsFrame, type ServerFrame } from "../protocol/frames";
 import { Signal } from "../base/signal";
 import { ServerClock } from "./clock";
-import { RefusedError } from "./failures";
+import { explain, RefusedError } from "./failures";
 
 /** What this needs of a WebSocket. */
 export interface Socket {
@@ -49,6 +49,8 @@ interface Pending {
 }
 
 const kOpen = 1;
+/** Of the codes for applications: browsers let pages send no other but 1000. */
+const kNotTaken = 4002;
 const kCreditAhead = 4_000_000;
 const kCheckMs = 10_000;
 const kSilentMs = 25_000;
@@ -218,10 +220,12 @@ export class Link {
       if (typeof data === "string") this.takeText(readText(data));
       else await this.takeFrame(data);
     } catch (error) {
-      if (!(error instanceof TextError || error instanceof FrameError)) throw error;
-      // A server that says what cannot be understood cannot be trusted with what is held: begin anew.
-      this.bye = `The server said something that this page does not understand: ${error.message}.`;
-      this.socket?.close(1002);
+      // What is held cannot be trusted now, whether the server said what cannot be understood or this page failed at it: begin anew.
+      const understood = !(error instanceof TextError || error instanceof FrameError);
+      if (understood) console.error(error);
+      this.bye = `${understood ? "This page failed at what the server said" : "The server said something that this page does not understand"}: ${explain(error)}.`;
+      this.lastComplete = null;
+      this.socket?.close(kNotTaken);
     }
   }
 
