@@ -106,6 +106,30 @@ test("a lost connection is taken up: the answer that was lost is asked for again
   assert.equal((await undo).revision, 3);
 });
 
+test("blocks of the map are kept over a lost connection only while the view that they were complete for is still the last", async () => {
+  const complete = (revision: number): unknown => ({ event: "complete", body: { stream: 0, epoch: "e1", revision, map_revision: 4, synced: true } });
+  for (const [words, after, resume, keep] of [
+    ["another view was asked for", [], { epoch: "", revision: 0 }, false],
+    ["what was complete was the view before", [complete(58)], { epoch: "", revision: 0 }, false],
+    ["it was granted and not yet complete", ["answer"], { epoch: "", revision: 0 }, false],
+    ["it was complete", ["answer", complete(59)], { epoch: "e1", revision: 59 }, true],
+  ] as const) {
+    const bench = new Bench();
+    bench.link.connect();
+    await bench.enter();
+    bench.socket.hear(complete(57));
+    bench.link.request("view", { layer: "map", frame: "map", centre: [5, 0, 0], radii: [8] }).catch(() => {});
+    for (const each of after) bench.socket.hear(each === "answer" ? { id: bench.socket.asked("view")[0]!.id, answer: { stream: 0, blocks: 3, lacking: 3 } } : each);
+    await turn();
+    bench.socket.close();
+    await turn();
+    bench.pass(500);
+    await bench.enter({ resumed: true });
+    assert.deepEqual(bench.socket.asked("hello")[0]!.body["resume"], { session: "s", ...resume }, words);
+    assert.deepEqual(bench.ready, [false, keep], words);
+  }
+});
+
 test("a session that is gone says so to who waits, and keeps no blocks", async () => {
   const bench = new Bench();
   bench.link.connect();

@@ -2,7 +2,7 @@
  * The connection to the bridge: requests and their answers, events, frames, credit, and coming back after it was lost.
  * Messages are taken strictly in the order in which they came, so what depends on order can rely on it.
  */
-import { VERSION, type Answers, type Code, type HelloAnswer, type HelloRequest, type Notices, type Requests } from "../../generated/messages";
+import { VERSION, type Answers, type Code, type Events, type HelloAnswer, type HelloRequest, type Notices, type Requests } from "../../generated/messages";
 import { answerTo, readText, TextError, type EventMessage, type ServerText } from "../protocol/envelope";
 import { FrameError, readFrame, type CellsFrame, type PointsFrame, type ServerFrame } from "../protocol/frames";
 import { Signal } from "../base/signal";
@@ -44,6 +44,8 @@ interface Pending {
   name: keyof Answers;
   data: string | Uint8Array<ArrayBuffer>;
   frame?: AskedFrame;
+  /** It changes what of the map is looked at. */
+  looks: boolean;
   resolve: (result: { fields: unknown; frame: AskedFrame | undefined }) => void;
   reject: (error: Error) => void;
 }
@@ -56,6 +58,11 @@ const kCheckMs = 10_000;
 const kSilentMs = 25_000;
 const kMaxWaitSeconds = 15;
 
+const kMapStream = 0;
+function looksElsewhere(name: keyof Requests, body: Requests[keyof Requests]): boolean {
+  return name === "view" ? (body as Requests["view"]).layer === "map" : name === "view_close" && (body as Requests["view_close"]).stream === kMapStream;
+}
+
 export class Link {
   readonly state = new Signal<LinkState>({ state: "connecting" });
   readonly clock = new ServerClock();
@@ -66,6 +73,7 @@ export class Link {
 
   private socket: Socket | null = null;
   private hello: HelloAnswer | null = null;
+  /** What the server says it knows to be here of the map; null from a view of it on until that is complete. */
   private lastComplete: { epoch: string; revision: number } | null = null;
   private lastId = 0;
   private readonly pending = new Map<number, Pending>();
@@ -103,7 +111,7 @@ export class Link {
   /** As request(), with the frame that came before the answer. */
   async requestFrame<K extends keyof Requests>(name: K, body: Requests[K]): Promise<{ answer: Answers[K]; frame: AskedFrame | undefined }> {
     const id = ++this.lastId;
-    const { fields, frame } = await this.ask(id, name, JSON.stringify({ id, request: name, body }));
+    const { fields, frame } = await this.ask(id, name, JSON.stringify({ id, request: name, body }), looksElsewhere(name, body));
     return { answer: answerTo(name, fields), frame };
   }
 
@@ -120,15 +128,16 @@ export class Link {
     if (this.state.value.state === "ready" && socket?.readyState === kOpen) socket.send(JSON.stringify({ notice: name, body }));
   }
 
-  private ask(id: number, name: keyof Answers, data: Pending["data"]): ReturnType<typeof this.wait> {
+  private ask(id: number, name: keyof Answers, data: Pending["data"], looks = false): ReturnType<typeof this.wait> {
     if (this.state.value.state !== "ready") return Promise.reject(new Error("There is no connection to the server now."));
-    const answered = this.wait(id, name, data);
+    if (looks) this.lastComplete = null;
+    const answered = this.wait(id, name, data, looks);
     this.socket?.send(data);
     return answered;
   }
 
-  private wait(id: number, name: keyof Answers, data: Pending["data"]): Promise<{ fields: unknown; frame: AskedFrame | undefined }> {
-    return new Promise((resolve, reject) => this.pending.set(id, { name, data, resolve, reject }));
+  private wait(id: number, name: keyof Answers, data: Pending["data"], looks = false): Promise<{ fields: unknown; frame: AskedFrame | undefined }> {
+    return new Promise((resolve, reject) => this.pending.set(id, { name, data, looks, resolve, reject }));
   }
 
   private open(ticket: string | undefined): void {
@@ -155,7 +164,7 @@ export class Link {
     const body: HelloRequest = { version: VERSION, ...this.options.who() };
     if (ticket !== undefined) body.ticket = ticket;
     if (this.hello) {
-      const { epoch, revision } = this.lastComplete ?? { epoch: this.hello.epoch, revision: 0 };
+      const { epoch, revision } = this.lastComplete ?? { epoch: "", revision: 0 }; // of no epoch: nothing is held
       body.resume = { session: this.hello.session, epoch, revision };
     }
     this.wait(id, "hello", "")
@@ -232,7 +241,7 @@ export class Link {
   private takeText(text: ServerText): void {
     if (text.what === "event") {
       if (text.event === "bye") this.bye = text.body.message;
-      if (text.event === "complete" && text.body.stream === 0) this.lastComplete = { epoch: text.body.epoch, revision: text.body.revision };
+      if (text.event === "complete" && text.body.stream === kMapStream) this.completed(text.body);
       this.onEvent(text);
       return;
     }
@@ -241,6 +250,11 @@ export class Link {
     this.pending.delete(text.id);
     if (text.what === "error") pending.reject(new RefusedError(text.refusal));
     else pending.resolve({ fields: text.fields, frame: pending.frame });
+  }
+
+  /** While a view waits for its answer this is still about the one before. */
+  private completed({ epoch, revision }: Events["complete"]): void {
+    if (![...this.pending.values()].some(({ looks }) => looks)) this.lastComplete = { epoch, revision };
   }
 
   private async takeFrame(data: ArrayBuffer): Promise<void> {
