@@ -189,8 +189,7 @@ export class App {
   }
 
   private async minimap(agent: string, resolution: number): ReturnType<ConstructorParameters<typeof AlignSession>[1]> {
-    const { frame } = await this.link.requestFrame("minimap", { agent, resolution });
-    return frame?.kind === "points" ? frame : undefined;
+    return (await this.link.requestFrame("minimap", { agent, resolution }, "points")).frame;
   }
 
   private readonly watched = new WeakSet<object>();

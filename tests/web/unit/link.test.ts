@@ -4,6 +4,7 @@ import type { HelloAnswer } from "../../../hmd_bridge/web/generated/messages";
 import { Link, type Socket } from "../../../hmd_bridge/web/src/link/link";
 import { RefusedError, wordsFor } from "../../../hmd_bridge/web/src/link/failures";
 import { ServerClock } from "../../../hmd_bridge/web/src/link/clock";
+import { pointsFrame } from "../support/voxel_map";
 
 interface Said { id?: number; request?: string; notice?: string; body: Record<string, unknown> }
 
@@ -25,7 +26,8 @@ class FakeSocket implements Socket {
     this.onclose?.();
   }
   hear(message: unknown): void {
-    this.onmessage?.({ data: typeof message === "string" ? message : JSON.stringify(message) });
+    const data = message instanceof Uint8Array ? Uint8Array.from(message).buffer : typeof message === "string" ? message : JSON.stringify(message);
+    this.onmessage?.({ data });
   }
   asked(name: string): Said[] {
     return this.sent.filter(({ request }) => request === name);
@@ -128,6 +130,22 @@ test("blocks of the map are kept over a lost connection only while the view that
     assert.deepEqual(bench.socket.asked("hello")[0]!.body["resume"], { session: "s", ...resume }, words);
     assert.deepEqual(bench.ready, [false, keep], words);
   }
+});
+
+test("a frame comes with its answer; an answer whose frame was lost says to ask again", async () => {
+  const bench = new Bench();
+  bench.link.connect();
+  await bench.enter();
+  const ask = (): ReturnType<typeof bench.link.requestFrame<"minimap", "points">> => bench.link.requestFrame("minimap", { agent: "robot1", resolution: 0.5 }, "points");
+  const answer = { agent: "robot1", frame_id: "a", points: 1 };
+  const whole = ask();
+  const lost = assert.rejects(ask(), /Ask again/);
+  const [first, second] = bench.socket.asked("minimap");
+  bench.socket.hear(pointsFrame(first!.id!, [1, 2, 3]));
+  bench.socket.hear({ id: first!.id, answer });
+  bench.socket.hear({ id: second!.id, answer });
+  assert.deepEqual([...(await whole).frame.points], [1, 2, 3]);
+  await lost;
 });
 
 test("a session that is gone says so to who waits, and keeps no blocks", async () => {

@@ -105,11 +105,17 @@ export class Link {
 
   /** Rejects with RefusedError, or Error where the connection was lost for good. */
   async request<K extends keyof Requests>(name: K, body: Requests[K]): Promise<Answers[K]> {
-    return (await this.requestFrame(name, body)).answer;
+    return (await this.asked(name, body)).answer;
   }
 
-  /** As request(), with the frame that came before the answer. */
-  async requestFrame<K extends keyof Requests>(name: K, body: Requests[K]): Promise<{ answer: Answers[K]; frame: AskedFrame | undefined }> {
+  /** As request(), with the frame that came before the answer. Rejects if it was lost with a connection. */
+  async requestFrame<K extends keyof Requests, F extends AskedFrame["kind"]>(name: K, body: Requests[K], kind: F): Promise<{ answer: Answers[K]; frame: AskedFrame & { kind: F } }> {
+    const { answer, frame } = await this.asked(name, body);
+    if (frame?.kind !== kind) throw new Error("What was asked for was lost on its way. Ask again.");
+    return { answer, frame: frame as AskedFrame & { kind: F } };
+  }
+
+  private async asked<K extends keyof Requests>(name: K, body: Requests[K]): Promise<{ answer: Answers[K]; frame: AskedFrame | undefined }> {
     const id = ++this.lastId;
     const { fields, frame } = await this.ask(id, name, JSON.stringify({ id, request: name, body }), looksElsewhere(name, body));
     return { answer: answerTo(name, fields), frame };

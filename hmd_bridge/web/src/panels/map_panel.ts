@@ -44,9 +44,9 @@ function gridSection(app: App): HTMLElement {
   const low = height(0.2, "Grid from, metres");
   const high = height(1.5, "Grid to, metres");
   const show = async (): Promise<void> => {
-    const asked = app.link.requestFrame("grid", { z: [Number(low.value), Number(high.value)] });
+    const asked = app.link.requestFrame("grid", { z: [Number(low.value), Number(high.value)] }, "cells");
     const answer = await app.news.tell(asked, ({ answer: { occupied, free } }) => `${counted(occupied, "cell")} occupied, ${counted(free, "cell")} free.`);
-    if (answer?.frame?.kind === "cells") app.grid.show(answer.frame, Number(low.value));
+    if (answer) app.grid.show(answer.frame, Number(low.value));
   };
   return section("2D grid", el("div", { class: "row" }, "from", low, "to", high, "m", button("Show", () => void show()), button("Hide", () => app.grid.hide())));
 }
