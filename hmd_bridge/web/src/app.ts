@@ -68,7 +68,7 @@ export class App {
     this.layers = new MapLayers(this.views, new Mesher(workers), stage, world, hello.resolution, budget);
     const drawn = (): void => stage.invalidate();
     this.editOverlay = new EditOverlay(this.editor, this.draft, this.align, (target) => this.targetPose(target), hello.resolution, drawn);
-    this.grid = new GridSheet(hello.resolution, drawn);
+    this.grid = new GridSheet(hello.resolution, stage.renderer.capabilities.maxTextureSize, drawn);
     content.add(this.layers.group, this.grid.group, new WorldOverlay(world, hello.resolution, drawn).group, this.editOverlay.group);
     this.layers.changed.watch(() => this.watchLabels());
   }

@@ -46,7 +46,8 @@ function gridSection(app: App): HTMLElement {
   const show = async (): Promise<void> => {
     const asked = app.link.requestFrame("grid", { z: [Number(low.value), Number(high.value)] }, "cells");
     const answer = await app.news.tell(asked, ({ answer: { occupied, free } }) => `${counted(occupied, "cell")} occupied, ${counted(free, "cell")} free.`);
-    if (answer) app.grid.show(answer.frame, Number(low.value));
+    const refused = answer && app.grid.show(answer.frame, Number(low.value));
+    if (refused) app.news.failed(refused);
   };
   return section("2D grid", el("div", { class: "row" }, "from", low, "to", high, "m", button("Show", () => void show()), button("Hide", () => app.grid.hide())));
 }
