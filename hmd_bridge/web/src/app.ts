@@ -88,6 +88,7 @@ export class App {
   /** A connection began. @param keep whether blocks of the map are still good */
   renew(hello: HelloAnswer, keep: boolean): void {
     this.own.set(hello);
+    this.world.renew();
     this.views.renew(keep);
     for (const robot of this.world.paths.value.keys()) void this.followPath(robot, true);
   }

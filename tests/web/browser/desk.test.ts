@@ -177,10 +177,14 @@ test("each refusal is said in clear words", async () => {
 test("a lost connection says so and comes back by itself, with the map still there", async () => {
   const { page, errors } = await open(browser, url);
   await settled(page, 100);
+  await page.getByRole("tab", { name: "Things" }).click();
+  server.propose("9");
+  await page.getByText("chair, seen by robot1").waitFor();
   server.dropConnections();
   await page.waitForFunction(() => document.body.dataset["connection"] === "lost");
   await page.waitForFunction(() => document.body.dataset["connection"] === "ready");
   assert(server.lastAsked("hello")!.resume);
+  await page.getByText("Nothing waits for your decision.").waitFor(); // the server says no more that it is open
   await settled(page, 100);
   assert.deepEqual(errors, []);
   await page.close();

@@ -1,9 +1,10 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import type { HelloAnswer } from "../../../hmd_bridge/web/generated/messages";
+import type { HelloAnswer, Pose } from "../../../hmd_bridge/web/generated/messages";
 import { Link, type Socket } from "../../../hmd_bridge/web/src/link/link";
 import { RefusedError, wordsFor } from "../../../hmd_bridge/web/src/link/failures";
 import { ServerClock } from "../../../hmd_bridge/web/src/link/clock";
+import { World } from "../../../hmd_bridge/web/src/link/world";
 import { pointsFrame } from "../support/voxel_map";
 
 interface Said { id?: number; request?: string; notice?: string; body: Record<string, unknown> }
@@ -244,4 +245,21 @@ test("the server's clock is told within half of the shortest way", () => {
   assert(Math.abs(clock.utime(2001.5) - 8_050_500) < 1);
   clock.hear(3000, 9_000_000, 9_000_000, 3900); // a slow one tells nothing
   assert(Math.abs(clock.utime(2001.5) - 8_050_500) < 1);
+});
+
+test("after a connection began only what is said to be open then waits for a decision", () => {
+  const world = new World();
+  const at: Pose = { position: [0, 0, 0], rotation: [0, 0, 0, 1] };
+  const propose = (detection: string, open = true): void =>
+    world.hear({ event: "detection", body: { detection, class_name: "chair", T_map_object: at, score: 0.8, by: "robot1", open } });
+  const evidence = { overlap: 0.7, rms: 0.03, free_space_violation: 0, iterations: 9, ms: 9, loose: [] };
+  propose("d1");
+  propose("d2");
+  propose("d1", false);
+  world.hear({ event: "alignment", body: { agent: "robot1", align: "a1", T_target_source: at, slip: 0.4, slip_angle: 0.1, evidence, open: true } });
+  const open = (): string[] => [...world.detections.value.map(({ detection }) => detection), ...world.slips.value.map(({ align }) => align)];
+  assert.deepEqual(open(), ["d2", "a1"]);
+  world.renew();
+  propose("d3");
+  assert.deepEqual(open(), ["d3"]);
 });
