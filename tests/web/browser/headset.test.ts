@@ -98,6 +98,22 @@ test("the small map is taken in the hand, put onto the other's, refined and acce
   await nextFrames(page);
   await canvasShot(page, "headset-7-added");
 
+  // Voxels moved: a point of them is shown, and where that shall go.
+  await pressButton(page, "tool box");
+  await aimAt(page, [0.5, 0, -1.6]);
+  await press(page, "select", true);
+  await aimAt(page, [1.3, 0, -2.6]);
+  await press(page, "select", false);
+  await pressButton(page, "do move");
+  for (const place of [[0.5, 0, -1.6], [1.3, 0, -2.6]] as const) {
+    await aimAt(page, [...place]);
+    await press(page, "select", true);
+    await press(page, "select", false);
+  }
+  await words(page, "moved");
+  const moved = server.lastAsked("edit")!;
+  assert(moved.op === "move" && Math.hypot(...moved.move!) > 0.1);
+
   // The keyboard names a label.
   await pressButton(page, "tool box");
   await aimAt(page, [0.5, 0, -1.6]);

@@ -1,9 +1,13 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { checkStruct } from "../../../hmd_bridge/web/generated/messages";
+import { checkStruct, type Requests } from "../../../hmd_bridge/web/generated/messages";
 import { composed, distance, fromXr, fromYaw, inverse, kIdentity, levelled, poseFromXr, rotated, toXr, transformed, unit, yawOf, type Vec3 } from "../../../hmd_bridge/web/src/base/vec";
+import { News } from "../../../hmd_bridge/web/src/base/news";
+import { Editor } from "../../../hmd_bridge/web/src/edit/editor";
 import { outline } from "../../../hmd_bridge/web/src/edit/outline";
+import { SceneDraft } from "../../../hmd_bridge/web/src/edit/scene_draft";
 import { begun, boundsOf, ended, flattened, shapeOf, volumeOf, withoutLast, withPoint, type Selection, type Tool } from "../../../hmd_bridge/web/src/edit/selection";
+import type { Ask } from "../../../hmd_bridge/web/src/link/link";
 import { clearanceColour, ribbon } from "../../../hmd_bridge/web/src/scene/ribbon";
 import { random } from "../support/random";
 
@@ -89,4 +93,38 @@ test("a ribbon is as wide as asked, and red where it is tight", () => {
   assert.equal(band.indices.length, 6);
   assert(clearanceColour(0)[0] > clearanceColour(0)[1] && clearanceColour(2)[1] > clearanceColour(2)[0]);
   assert.equal(ribbon([{ p: [0, 0, 0], clearance: 1 }], 0.4, 0).indices.length, 0);
+});
+
+test("voxels are moved by two points that the person shows; one that is not shown moves nothing", async (t) => {
+  t.mock.method(globalThis, "setInterval", () => 0);
+  const edits: Requests["edit"][] = [];
+  const ask = ((name: string, body: Requests["edit"]) => {
+    if (name === "edit") edits.push(body);
+    return Promise.resolve({ edit: "e1", revision: 1, voxels: 8 });
+  }) as unknown as Ask;
+  const news = new News();
+  const editor = new Editor(ask, news, new SceneDraft(ask, news));
+  const turn = (): Promise<void> => new Promise((resolve) => setImmediate(resolve));
+  await editor.move();
+  assert.match(news.latest.value!.text, /Select something first/);
+  const shape = { kind: "box", min: [0, 0, 0], max: [1, 1, 2] } as const;
+  const show = async (...points: (Vec3 | null)[]): Promise<void> => {
+    editor.begin("box");
+    editor.point([0, 0, 0]);
+    editor.point([1, 1, 0]);
+    const moved = editor.move();
+    for (const p of points) {
+      if (p) editor.point(p);
+      else editor.cancel();
+      await turn();
+    }
+    await moved;
+  };
+  await show([1, 1, 0], [3, 1, 0.5]);
+  assert.deepEqual(edits, [{ op: "move", frame: "map", shape, move: [2, 0, 0.5] }]);
+  assert.deepEqual(editor.undoable.value, ["e1"]);
+  assert.equal(editor.selection.value, null);
+  await show([1, 1, 0], null);
+  await show(null);
+  assert.equal(edits.length, 1);
 });

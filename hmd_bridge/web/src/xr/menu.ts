@@ -67,6 +67,7 @@ export class Menu {
     cancel: () => this.app.editor.cancel(),
     add: () => void this.app.editor.apply("add"),
     delete: () => void this.app.editor.apply("delete"),
+    move: () => void this.app.editor.move(),
     undo: () => void this.app.editor.undo(),
     redo: () => void this.app.editor.redo(),
     obstacle: () => void this.app.addObstacle(),
@@ -131,7 +132,7 @@ export class Menu {
       title: "Edit",
       rows: [
         kTools.map(({ tool, title }) => ({ id: `tool ${tool}`, title, pressed: tool === selected })),
-        [{ id: "do done", title: "Done" }, { id: "do back", title: "Back" }, { id: "do cancel", title: "Cancel" }],
+        [{ id: "do done", title: "Done" }, { id: "do back", title: "Back" }, { id: "do cancel", title: "Cancel" }, { id: "do move", title: "Move…", disabled: off }],
         [{ id: "do add", title: "Add", main: true, disabled: off }, { id: "do delete", title: "Delete", main: true, disabled: off }, { id: "do undo", title: "Undo", disabled: editor.undoable.value.length === 0 }, { id: "do redo", title: "Redo", disabled: editor.redoable.value.length === 0 }],
         [{ id: "do label", title: "Label…", disabled: off }, { id: "do touch", title: "Name a thing…", share: 1.4, disabled: off }, { id: "do zone", title: "Keep out…", disabled: off }, { id: "do obstacle", title: "Obstacle", disabled: off }],
         [kBack, { id: "do atHand", title: this.atHand.value ? "Points at my hand" : "Points where I aim", share: 2 }],
