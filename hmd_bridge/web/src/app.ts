@@ -5,6 +5,7 @@ import { News } from "./base/news";
 import { Signal } from "./base/signal";
 import { fromYaw, kIdentity, type Vec3 } from "./base/vec";
 import { AlignSession } from "./edit/align_session";
+import { ConflictTour } from "./edit/conflict_tour";
 import { Editor } from "./edit/editor";
 import { SceneDraft } from "./edit/scene_draft";
 import type { Ask, Link } from "./link/link";
@@ -33,6 +34,7 @@ export class App {
   readonly draft: SceneDraft;
   readonly editor: Editor;
   readonly align: AlignSession;
+  readonly conflicts: ConflictTour;
   readonly layers: MapLayers;
   readonly editOverlay: EditOverlay;
   readonly grid: GridSheet;
@@ -57,6 +59,7 @@ export class App {
     this.editor = new Editor(this.ask, news, this.draft);
     this.editor.setThickness(hello.resolution);
     this.align = new AlignSession(this.ask, (agent, resolution) => this.minimap(agent, resolution), news);
+    this.conflicts = new ConflictTour(this.ask, news);
     this.views = new Views((body) => link.request("view", body), (body) => link.request("view_close", body));
     link.onBlocks = (frame) => this.views.apply(frame);
     link.onEvent = (message) => {
@@ -69,8 +72,11 @@ export class App {
     const drawn = (): void => stage.invalidate();
     this.editOverlay = new EditOverlay(this.editor, this.draft, this.align, (target) => this.targetPose(target), hello.resolution, drawn);
     this.grid = new GridSheet(hello.resolution, stage.renderer.capabilities.maxTextureSize, drawn);
-    content.add(this.layers.group, this.grid.group, new WorldOverlay(world, hello.resolution, drawn).group, this.editOverlay.group);
-    this.layers.changed.watch(() => this.watchLabels());
+    content.add(this.layers.group, this.grid.group, new WorldOverlay(world, this.conflicts, hello.resolution, drawn).group, this.editOverlay.group);
+    this.layers.changed.watch(() => {
+      this.watchLabels();
+      if (!this.layers.isShown("conflicts")) this.conflicts.look(null);
+    });
   }
 
   get hello(): HelloAnswer {
@@ -172,6 +178,12 @@ export class App {
     if (!answer) return;
     this.editor.did(answer.undo);
     await this.loadThings();
+  }
+
+  /** Asks where agents disagree, and shows it. */
+  async showConflicts(): Promise<void> {
+    this.layers.show("conflicts");
+    await this.conflicts.refresh();
   }
 
   async sendMap(): Promise<void> {

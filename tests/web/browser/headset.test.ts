@@ -127,6 +127,15 @@ test("the small map is taken in the hand, put onto the other's, refined and acce
   await words(page, "label");
   assert.equal((server.lastAsked("label") as { class_name: string }).class_name, "desk");
 
+  // Where agents disagree.
+  await pressButton(page, "page main");
+  await pressButton(page, "page conflicts");
+  await page.waitForFunction(() => (window as unknown as HeadsetPage).concordImmersive.panel.pageShown.title.includes("640"));
+  await pressButton(page, "do conflictNext");
+  await page.waitForFunction(() => (window as unknown as HeadsetPage).concordImmersive.panel.pageShown.title.startsWith("1 of 1"));
+  await nextFrames(page);
+  await canvasShot(page, "headset-11-conflicts");
+
   // A path, blocked, and the other one.
   await pressButton(page, "page main");
   await pressButton(page, "page robots");

@@ -1,8 +1,9 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { checkStruct, type Requests } from "../../../hmd_bridge/web/generated/messages";
+import { checkStruct, type ConflictRegion, type Requests } from "../../../hmd_bridge/web/generated/messages";
 import { composed, distance, fromXr, fromYaw, inverse, kIdentity, levelled, poseFromXr, rotated, toXr, transformed, unit, yawOf, type Vec3 } from "../../../hmd_bridge/web/src/base/vec";
 import { News } from "../../../hmd_bridge/web/src/base/news";
+import { conflictWords, ConflictTour, cornersOf } from "../../../hmd_bridge/web/src/edit/conflict_tour";
 import { Editor } from "../../../hmd_bridge/web/src/edit/editor";
 import { outline } from "../../../hmd_bridge/web/src/edit/outline";
 import { SceneDraft } from "../../../hmd_bridge/web/src/edit/scene_draft";
@@ -127,4 +128,26 @@ test("voxels are moved by two points that the person shows; one that is not show
   await show([1, 1, 0], null);
   await show(null);
   assert.equal(edits.length, 1);
+});
+
+test("places where agents disagree are looked at one after the other, round and round", async () => {
+  const place = (x: number): ConflictRegion => ({ low: [x, 0, 0], high: [x + 1, 3, 0], voxels: 8, claims: [{ agent: "robot1", occupied: 0, free: 8 }] });
+  let regions = [place(1), place(2), place(3)];
+  const asked = (() => Promise.resolve({ regions, regions_in_all: regions.length, voxels_in_all: 24 })) as unknown as Ask;
+  const tour = new ConflictTour(asked, new News());
+  tour.step(1);
+  assert.equal(tour.region, undefined, "nothing was asked for");
+  await tour.refresh();
+  assert.equal(tour.region, undefined);
+  const steps = ([1, 1, 1, 1, -1] as const).map((by) => {
+    tour.step(by);
+    return tour.region?.low[0];
+  });
+  assert.deepEqual(steps, [1, 2, 3, 1, 3]);
+  assert.deepEqual(cornersOf(place(2), 0.5), [[1, 0, 0], [2, 2, 0.5]]);
+  assert.equal(conflictWords(place(2)), "8 voxels. robot1: 0 occupied, 8 free");
+  regions = [];
+  await tour.refresh();
+  tour.step(-1);
+  assert.equal(tour.region, undefined, "they agree by now");
 });
