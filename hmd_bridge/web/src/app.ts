@@ -7,6 +7,7 @@ import { fromYaw, kIdentity, type Vec3 } from "./base/vec";
 import { AlignSession } from "./edit/align_session";
 import { ConflictTour } from "./edit/conflict_tour";
 import { Editor } from "./edit/editor";
+import { pathWords } from "./edit/robot_acts";
 import { SceneDraft } from "./edit/scene_draft";
 import type { Ask, Link } from "./link/link";
 import type { World } from "./link/world";
@@ -102,7 +103,7 @@ export class App {
   async followPath(robot: string, follow: boolean): Promise<void> {
     if (!follow) this.world.dropPath(robot);
     const answer = await this.news.tell(this.ask("path", { robot, frame: "map", follow }), ({ path }) =>
-      follow && path.points.length === 0 ? `${robot} has no path now. ${path.message}` : null);
+      follow && path.points.length === 0 ? `${robot}: ${pathWords(path)}` : null);
     if (answer && follow) this.world.setPath(answer.path);
   }
 

@@ -1,11 +1,12 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { checkStruct, type ConflictRegion, type Requests } from "../../../hmd_bridge/web/generated/messages";
+import { checkStruct, type ConflictRegion, type Path, type Requests } from "../../../hmd_bridge/web/generated/messages";
 import { composed, distance, fromXr, fromYaw, inverse, kIdentity, levelled, poseFromXr, rotated, toXr, transformed, unit, yawOf, type Vec3 } from "../../../hmd_bridge/web/src/base/vec";
 import { News } from "../../../hmd_bridge/web/src/base/news";
 import { conflictWords, ConflictTour, cornersOf } from "../../../hmd_bridge/web/src/edit/conflict_tour";
 import { Editor } from "../../../hmd_bridge/web/src/edit/editor";
 import { outline } from "../../../hmd_bridge/web/src/edit/outline";
+import { pathWords } from "../../../hmd_bridge/web/src/edit/robot_acts";
 import { SceneDraft } from "../../../hmd_bridge/web/src/edit/scene_draft";
 import { begun, boundsOf, ended, flattened, shapeOf, volumeOf, withoutLast, withPoint, type Selection, type Tool } from "../../../hmd_bridge/web/src/edit/selection";
 import type { Ask } from "../../../hmd_bridge/web/src/link/link";
@@ -150,4 +151,13 @@ test("places where agents disagree are looked at one after the other, round and 
   await tour.refresh();
   tour.step(-1);
   assert.equal(tour.region, undefined, "they agree by now");
+});
+
+test("of a path its reason and the planner's message are said, also of one that is there", () => {
+  const path: Path = { robot: "robot1", status: "OK", message: "", frame: "map", points: [], length: 6.32, clearance: 0.254, plan: "p", plan_number: 1, map_revision: 3, active: true };
+  assert.equal(pathWords(path), "6.3 m, at least 0.25 m of room");
+  assert.equal(pathWords({ ...path, active: false, plan_number: 3 }), "6.3 m, at least 0.25 m of room, planned 3 times, a plan only");
+  assert.equal(pathWords({ ...path, message: "nothing was heard of the map for 12 s" }), "6.3 m, at least 0.25 m of room; nothing was heard of the map for 12 s");
+  assert.equal(pathWords({ ...path, status: "NO_VALID_PATH", message: "the nearest place is 1.2 0.4" }), "No path (NO_VALID_PATH): the nearest place is 1.2 0.4");
+  assert.equal(pathWords({ ...path, status: "NO_PATH" }), "No path (NO_PATH)");
 });

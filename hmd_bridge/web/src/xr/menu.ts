@@ -4,7 +4,7 @@ import { counted } from "../base/news";
 import { Signal } from "../base/signal";
 import { add, distance, scale } from "../base/vec";
 import { conflictWords, cornersOf } from "../edit/conflict_tour";
-import { correct, refer, send, whatIf } from "../edit/robot_acts";
+import { correct, pathWords, refer, send, whatIf } from "../edit/robot_acts";
 import { kTools, type Tool } from "../edit/selection";
 import type { Asset, ConflictRegion, Instance } from "../../generated/messages";
 import { evidenceWords } from "../panels/align_panel";
@@ -108,12 +108,14 @@ export class Menu {
   }
 
   private words(): string {
-    const { editor, news } = this.app;
+    const { editor, news, world } = this.app;
     const item = news.latest.value;
     if (item) return item.text;
     if (editor.question.value) return editor.question.value.hint.replace("Click", "Point at");
     if (this.name !== "align" && editor.blocked.value !== null) return editor.blocked.value;
     if (this.name === "conflicts" && this.app.conflicts.region) return conflictWords(this.app.conflicts.region);
+    const path = this.name === "robots" && [...world.paths.value.values()].at(-1);
+    if (path) return `${path.robot}: ${pathWords(path)}`;
     const selection = editor.selection.value;
     if (selection && !selection.closed) return kTools.find(({ tool }) => tool === selection.tool)!.hint.replace("Click", "Point at and press on");
     return "Point with your hand or controller; pinch or press the trigger.";
