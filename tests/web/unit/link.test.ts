@@ -133,6 +133,25 @@ test("blocks of the map are kept over a lost connection only while the view that
   }
 });
 
+test("who looked elsewhere, or away, while there was no connection keeps no blocks", async () => {
+  for (const look of [
+    (link: Link) => link.request("view", { layer: "map", frame: "map", centre: [5, 0, 0], radii: [8] }),
+    (link: Link) => link.request("view_close", { stream: 0 }),
+  ]) {
+    const bench = new Bench();
+    bench.link.connect();
+    await bench.enter();
+    bench.socket.hear({ event: "complete", body: { stream: 0, epoch: "e1", revision: 57, map_revision: 4, synced: true } });
+    await turn();
+    bench.socket.close();
+    await turn();
+    await assert.rejects(look(bench.link), /no connection/);
+    bench.pass(500);
+    await bench.enter({ resumed: true });
+    assert.deepEqual(bench.ready, [false, false]);
+  }
+});
+
 test("a frame comes with its answer; an answer whose frame was lost says to ask again", async () => {
   const bench = new Bench();
   bench.link.connect();

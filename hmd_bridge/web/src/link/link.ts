@@ -135,8 +135,8 @@ export class Link {
   }
 
   private ask(id: number, name: keyof Answers, data: Pending["data"], looks = false): ReturnType<typeof this.wait> {
+    if (looks) this.lastComplete = null; // also without a connection: the first view of the next one is another
     if (this.state.value.state !== "ready") return Promise.reject(new Error("There is no connection to the server now."));
-    if (looks) this.lastComplete = null;
     const answered = this.wait(id, name, data, looks);
     this.socket?.send(data);
     return answered;
