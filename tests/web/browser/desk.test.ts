@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import type { Browser, Page } from "playwright-core";
+import type { App } from "../../../hmd_bridge/web/src/app";
 import { FakeServer } from "../support/fake_server";
 import { canvasShot, launch, nextFrames, open, pageShot, settled, webFolder } from "../support/page";
 
@@ -160,6 +161,20 @@ test("labelled things and assets are listed, changed, taken away, and what was s
   await page.getByText("Undone").waitFor();
   assert.deepEqual(server.lastAsked("undo"), { edit: "asset-3" });
   server.things = [];
+  assert.deepEqual(errors, []);
+  await page.close();
+});
+
+test("where agents disagree is asked for, looked at, and put away with its layer", async () => {
+  const { page, errors } = await open(browser, url);
+  await settled(page, 100);
+  const looked = (): Promise<number | null> => page.evaluate(() => (window as unknown as { concord: App }).concord.conflicts.found.value!.at);
+  await page.getByRole("tab", { name: "Map" }).click();
+  await page.getByRole("button", { name: "Show where agents disagree" }).click();
+  await page.getByRole("button", { name: "robot2: 640 occupied, 0 free" }).click();
+  assert.equal(await looked(), 0);
+  await page.getByLabel("Conflicts", { exact: true }).uncheck();
+  assert.equal(await looked(), null);
   assert.deepEqual(errors, []);
   await page.close();
 });
