@@ -4,8 +4,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "semantic/room_planes.hpp"
-#include "semantic/solid_voxels.hpp"
+#include "semantic/model_evidence.hpp"
 
 namespace concord {
 namespace {
@@ -84,91 +83,16 @@ std::vector<Candidate> elected(std::vector<Candidate> all) {
   return out;
 }
 
-/// Of the model's surface, what lies in an occupied voxel or at the face of one, and what lies amidst free ones. Nearer
-/// than a fit asks for: a box is within a voxel and a half of many things.
-FoundModel judged(const std::vector<Eigen::Vector3d>& p_model, const BrickMap& map, double resolution,
-                  const Transform& T) {
-  std::size_t matched = 0, free = 0;
-  for (const Eigen::Vector3d& p : p_model) {
-    const VoxelIndex v = voxel_of(T * p, resolution);
-    bool is_matched = false, is_amidst_free = true;
-    for (int i = 0; i < 27; ++i) {
-      const VoxelIndex d{i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1}, beside{v.x + d.x, v.y + d.y, v.z + d.z};
-      const LogOdds value = in_bounds(beside) ? map.at(beside) : kUnknown;
-      is_amidst_free = is_amidst_free && is_free(value);
-      const bool is_at_face = std::abs(d.x) + std::abs(d.y) + std::abs(d.z) <= 1;
-      is_matched = is_matched || (is_at_face && is_known(value) && is_occupied(value));
-    }
-    matched += is_matched ? 1 : 0;
-    free += is_amidst_free ? 1 : 0;
-  }
-  const auto share = [&](std::size_t count) {
-    return static_cast<double>(count) / static_cast<double>(p_model.size());
-  };
-  FoundModel out{T, 0, share(matched), share(free)};
-  const double seen = out.matched + out.free;
-  if (seen > 0) out.score = out.matched / seen * std::min(1.0, out.matched / kEnoughSeen);
-  return out;
-}
-
-/// What a model takes up, for the question whether things that are seen belong to it.
-struct ModelBody {
-  Eigen::AlignedBox3d box;  ///< metres, model's axes, with a margin of kBeyond voxels
-  BrickMasks near;          ///< voxels of the model's own lattice that are in it or at the face of one that is
-};
-
-Result<ModelBody> body_of(const TriangleMesh& mesh, double scale, const std::vector<Eigen::Vector3d>& p_model,
-                          double resolution) {
-  const auto filled = voxelize(mesh, {Transform::Identity(), scale}, resolution, Fill::kSolid);
-  if (!filled) return tl::unexpected(filled.error());
-  ModelBody body;
-  BrickMasks all = filled->surface;
-  all.insert(filled->interior);
-  for (const VoxelIndex v : all.voxels()) {
-    for (int d = -1; d <= 1; ++d) {
-      body.near.insert({v.x + d, v.y, v.z});
-      body.near.insert({v.x, v.y + d, v.z});
-      body.near.insert({v.x, v.y, v.z + d});
-    }
-  }
-  for (const Eigen::Vector3d& p : p_model) body.box.extend(p);
-  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(kBeyond * resolution);
-  body.box = {body.box.min() - margin, body.box.max() + margin};
-  return body;
-}
-
-/// Of the furniture around a placed model, the share that is it: a box about as large as a pump has its corners where
-/// the pump has nothing.
-double explained(const ModelBody& body, const BrickMasks& furniture, double resolution, const Transform& T_map_model) {
-  const Eigen::AlignedBox3d box = body.box.transformed(Eigen::Affine3d(T_map_model.matrix()));
-  const VoxelIndex low = voxel_of(box.min(), resolution), high = voxel_of(box.max(), resolution);
-  const Transform T_model_map = T_map_model.inverse();
-  std::size_t mine = 0, others = 0;
-  for (std::int32_t z = low.z; z <= high.z; ++z) {
-    for (std::int32_t y = low.y; y <= high.y; ++y) {
-      for (std::int32_t x = low.x; x <= high.x; ++x) {
-        if (!furniture.contains({x, y, z})) continue;
-        const Eigen::Vector3d p = T_model_map * centre_of({x, y, z}, resolution);
-        if (!body.box.contains(p)) continue;
-        ++(body.near.contains(voxel_of(p, resolution)) ? mine : others);
-      }
-    }
-  }
-  return mine > 0 ? static_cast<double>(mine) / static_cast<double>(mine + others) : 0.0;
-}
-
 }  // namespace
 
 Result<std::vector<FoundModel>> find_model(const TriangleMesh& mesh, double scale, const BrickMap& map,
                                            double resolution, const FindOptions& options) {
   const auto p_model = surface_points(mesh, scale, resolution);
   if (!p_model) return tl::unexpected(p_model.error());
-  const auto body = body_of(mesh, scale, *p_model, resolution);
+  const auto body = model_body(mesh, scale, *p_model, upright(options.up).linear(), resolution);
   if (!body) return tl::unexpected(body.error());
-  const BrickMasks occupied = occupied_of(map);
-  BrickMasks furniture = occupied;
-  furniture.erase(find_room_planes(occupied, resolution).voxels);
-  const auto box = bounds_of(furniture);
+  const SearchedMap searched(map, resolution);
+  const auto box = bounds_of(searched.furniture);
   if (!box) return std::vector<FoundModel>();
 
   double reach = 0;
@@ -176,7 +100,7 @@ Result<std::vector<FoundModel>> find_model(const TriangleMesh& mesh, double scal
   Ballot ballot(*box, static_cast<std::int32_t>(std::min(reach / resolution + 2, 4000.0)));
   if (ballot.cells() > kMaxFindCells)
     return refuse(Code::kTooLarge, "the map is too wide to be searched; search an agent's part of it");
-  const auto voxels = furniture.voxels();
+  const auto voxels = searched.furniture.voxels();
   const auto voters = spread(*p_model, kVoters), few = spread(*p_model, kFitPoints);
   std::vector<Candidate> candidates;
   const auto turned = [&](int yaw) {
@@ -191,8 +115,8 @@ Result<std::vector<FoundModel>> find_model(const TriangleMesh& mesh, double scal
                          static_cast<std::int32_t>(std::lround(q.z()))};
       for (const VoxelIndex v : voxels) ballot.vote({v.x - d.x, v.y - d.y, v.z - d.z});
     }
-    // One that is seen from one side at all has a quarter of the votes.
-    ballot.for_each(static_cast<std::uint16_t>(voters.size() / 4 + 1), [&](VoxelIndex at, std::uint16_t votes) {
+    // One that is seen from one side has a quarter of the votes, less those that fall beside.
+    ballot.for_each(static_cast<std::uint16_t>(voters.size() / 6 + 1), [&](VoxelIndex at, std::uint16_t votes) {
       candidates.push_back({votes, yaw, at});
     });
   }
@@ -200,9 +124,8 @@ Result<std::vector<FoundModel>> find_model(const TriangleMesh& mesh, double scal
   for (const Candidate& one : elected(std::move(candidates))) {
     Transform T = turned(one.yaw);
     T.pretranslate(centre_of(one.at, resolution));
-    FoundModel model = judged(few, map, resolution, fit_object(few, occupied, resolution, T, kNear).T_map_model);
-    model.explained = explained(*body, furniture, resolution, model.T_map_model);
-    model.score *= model.explained * model.explained;
+    const ObjectFit fit = fit_object(few, searched.occupied, resolution, T, kNear);
+    const FoundModel model = judged(*body, few, searched, fit.T_map_model);
     if (model.score >= options.min_score) found.push_back(model);
   }
   std::ranges::stable_sort(

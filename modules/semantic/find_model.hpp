@@ -4,20 +4,10 @@
 
 #include "core/brick_map.hpp"
 #include "core/transform.hpp"
+#include "semantic/model_evidence.hpp"
 #include "semantic/object_fit.hpp"
 
 namespace concord {
-
-/// A place where a model seems to be.
-struct FoundModel {
-  Transform T_map_model = Transform::Identity();
-  /// 0 to 1: of its surface that the map speaks of, the share that is occupied (less if that is little), times
-  /// the square of `explained`: what is there besides tells things apart better than what is not to be seen of them
-  double score = 0;
-  double matched = 0;    ///< share of its surface in an occupied voxel or at the face of one
-  double free = 0;       ///< share of its surface that lies amidst what was seen to be free
-  double explained = 0;  ///< of what is occupied within kBeyond of the box around it, the share that is in or at it
-};
 
 struct FindOptions {
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< of the model's own axes: it is sought upright
@@ -42,7 +32,5 @@ inline constexpr std::size_t kCandidates = 120;
 inline constexpr std::int64_t kMaxFindCells = 150'000'000;
 inline constexpr double kNear = 0.2;  ///< metres: half of what one direction is from the next, at the end of a metre
 inline constexpr std::size_t kFitPoints = 500;
-inline constexpr double kBeyond = 3.0;      ///< voxels
-inline constexpr double kEnoughSeen = 0.8;  ///< of the surface must be occupied for a full score
 
 }  // namespace concord

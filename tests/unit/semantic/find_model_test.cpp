@@ -10,12 +10,6 @@ namespace {
 
 constexpr double kResolution = 0.05;
 
-/// A pump: a block, a motor on it to one side, a pipe out of the other.
-TriangleMesh pump() {
-  return joined(joined(box_mesh({-0.4, -0.2, 0}, {0.4, 0.2, 0.3}), box_mesh({-0.4, -0.15, 0.3}, {0.0, 0.15, 0.7})),
-                box_mesh({0.2, -0.05, 0.3}, {0.3, 0.05, 1.0}));
-}
-
 Transform placed(double x, double y, double yaw) {
   Transform T = Transform::Identity();
   T.linear() = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
@@ -46,7 +40,7 @@ double apart(const FoundModel& found, const Transform& T) {
 
 TEST(FindModel, FindsEachPumpWhereverItStandsAndNothingElse) {
   const Transform one = placed(-1.2, -1.4, 0.7), two = placed(1.3, -0.6, 3.9);
-  const auto found = find_model(pump(), 1.0, room_with({{pump(), one}, {pump(), two}}), kResolution);
+  const auto found = find_model(pump_mesh(), 1.0, room_with({{pump_mesh(), one}, {pump_mesh(), two}}), kResolution);
   ASSERT_TRUE(found) << found.error().message;
   for (const FoundModel& model : *found) {
     SCOPED_TRACE(::testing::Message() << model.T_map_model.translation().transpose() << " score " << model.score);
@@ -62,25 +56,25 @@ TEST(FindModel, FindsEachPumpWhereverItStandsAndNothingElse) {
 }
 
 TEST(FindModel, FindsNothingWhereThereIsNone) {
-  const auto found = find_model(pump(), 1.0, room_with({}), kResolution);
+  const auto found = find_model(pump_mesh(), 1.0, room_with({}), kResolution);
   ASSERT_TRUE(found);
   for (const FoundModel& one : *found) ADD_FAILURE() << one.T_map_model.translation().transpose() << " " << one.score;
-  EXPECT_TRUE(find_model(pump(), 1.0, BrickMap(), kResolution)->empty());
+  EXPECT_TRUE(find_model(pump_mesh(), 1.0, BrickMap(), kResolution)->empty());
 }
 
 TEST(FindModel, WhatIsThereBesidesSpeaksAgainstIt) {
   const Transform at = placed(0, -1, 0);
   const auto best = [&](const BrickMap& map) {
-    const auto found = find_model(pump(), 1.0, map, kResolution, {Eigen::Vector3d::UnitZ(), 0.0, 20});
+    const auto found = find_model(pump_mesh(), 1.0, map, kResolution, {Eigen::Vector3d::UnitZ(), 0.0, 20});
     FoundModel there;
     for (const FoundModel& one : found.value()) {
       if (apart(one, at) < 0.2 && one.score > there.score) there = one;
     }
     return there;
   };
-  const FoundModel alone = best(room_with({{pump(), at}}));
+  const FoundModel alone = best(room_with({{pump_mesh(), at}}));
   // A crate from the block up to the pipe's end: all of the pump is on it or in it.
-  const FoundModel crated = best(room_with({{pump(), at}, {box_mesh({-0.4, -0.2, 0}, {0.4, 0.2, 1.0}), at}}));
+  const FoundModel crated = best(room_with({{pump_mesh(), at}, {box_mesh({-0.4, -0.2, 0}, {0.4, 0.2, 1.0}), at}}));
   EXPECT_GT(alone.explained, 0.9);
   EXPECT_LT(crated.explained, 0.8);
   EXPECT_LT(crated.score, 0.75);
@@ -93,7 +87,7 @@ TEST(FindModel, FreeSpaceSpeaksAgainstIt) {
   // The best of those that stand on the block.
   const auto score = [&] {
     double best = 0;
-    const auto found = find_model(pump(), 1.0, map, kResolution, {Eigen::Vector3d::UnitZ(), 0.0, 20});
+    const auto found = find_model(pump_mesh(), 1.0, map, kResolution, {Eigen::Vector3d::UnitZ(), 0.0, 20});
     for (const FoundModel& one : found.value()) best = apart(one, at) < 0.4 ? std::max(best, one.score) : best;
     return best;
   };
@@ -116,10 +110,11 @@ TEST(FindModel, FreeSpaceSpeaksAgainstIt) {
 }
 
 TEST(FindModel, AModelWithAnotherUpIsSoughtUpright) {
-  TriangleMesh lying = pump();
+  TriangleMesh lying = pump_mesh();
   for (Eigen::Vector3d& p : lying.vertices) p = {p.x(), p.z(), -p.y()};  // y up, as glTF has it
   const Transform at = placed(-1.2, -1.4, 0.7);
-  const auto found = find_model(lying, 1.0, room_with({{pump(), at}}), kResolution, {Eigen::Vector3d::UnitY(), 0.7, 5});
+  const auto found =
+      find_model(lying, 1.0, room_with({{pump_mesh(), at}}), kResolution, {Eigen::Vector3d::UnitY(), 0.7, 5});
   ASSERT_EQ(found->size(), 1U);
   EXPECT_LT(apart(found->at(0), at), 0.06);
   EXPECT_GT((found->at(0).T_map_model.linear() * Eigen::Vector3d::UnitY()).z(), 0.99);

@@ -134,4 +134,9 @@ std::vector<SampleMesh> sample_meshes() {
           {"soup", soup(7, 40), false}};
 }
 
+TriangleMesh pump_mesh() {
+  return joined(joined(box_mesh({-0.4, -0.2, 0}, {0.4, 0.2, 0.3}), box_mesh({-0.4, -0.15, 0.3}, {0.0, 0.15, 0.7})),
+                box_mesh({0.2, -0.05, 0.3}, {0.3, 0.05, 1.0}));
+}
+
 }  // namespace concord

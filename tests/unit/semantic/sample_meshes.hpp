@@ -18,5 +18,7 @@ struct SampleMesh {
 
 [[nodiscard]] TriangleMesh box_mesh(const Eigen::Vector3d& low, const Eigen::Vector3d& high);
 [[nodiscard]] TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b);
+/// A block, a motor on it to one side, a pipe out of the other; it stands on z = 0.
+[[nodiscard]] TriangleMesh pump_mesh();
 
 }  // namespace concord
