@@ -5,7 +5,9 @@ import { News } from "./base/news";
 import { Signal } from "./base/signal";
 import { fromYaw, kIdentity, type Vec3 } from "./base/vec";
 import { AlignSession } from "./edit/align_session";
+import { ConflictTour } from "./edit/conflict_tour";
 import { Editor } from "./edit/editor";
+import { pathWords } from "./edit/robot_acts";
 import { SceneDraft } from "./edit/scene_draft";
 import type { Ask, Link } from "./link/link";
 import type { World } from "./link/world";
@@ -33,6 +35,7 @@ export class App {
   readonly draft: SceneDraft;
   readonly editor: Editor;
   readonly align: AlignSession;
+  readonly conflicts: ConflictTour;
   readonly layers: MapLayers;
   readonly editOverlay: EditOverlay;
   readonly grid: GridSheet;
@@ -57,6 +60,7 @@ export class App {
     this.editor = new Editor(this.ask, news, this.draft);
     this.editor.setThickness(hello.resolution);
     this.align = new AlignSession(this.ask, (agent, resolution) => this.minimap(agent, resolution), news);
+    this.conflicts = new ConflictTour(this.ask, news);
     this.views = new Views((body) => link.request("view", body), (body) => link.request("view_close", body));
     link.onBlocks = (frame) => this.views.apply(frame);
     link.onEvent = (message) => {
@@ -68,9 +72,12 @@ export class App {
     this.layers = new MapLayers(this.views, new Mesher(workers), stage, world, hello.resolution, budget);
     const drawn = (): void => stage.invalidate();
     this.editOverlay = new EditOverlay(this.editor, this.draft, this.align, (target) => this.targetPose(target), hello.resolution, drawn);
-    this.grid = new GridSheet(hello.resolution, drawn);
-    content.add(this.layers.group, this.grid.group, new WorldOverlay(world, hello.resolution, drawn).group, this.editOverlay.group);
-    this.layers.changed.watch(() => this.watchLabels());
+    this.grid = new GridSheet(hello.resolution, stage.renderer.capabilities.maxTextureSize, drawn);
+    content.add(this.layers.group, this.grid.group, new WorldOverlay(world, this.conflicts, hello.resolution, drawn).group, this.editOverlay.group);
+    this.layers.changed.watch(() => {
+      this.watchLabels();
+      if (!this.layers.isShown("conflicts")) this.conflicts.look(null);
+    });
   }
 
   get hello(): HelloAnswer {
@@ -88,6 +95,7 @@ export class App {
   /** A connection began. @param keep whether blocks of the map are still good */
   renew(hello: HelloAnswer, keep: boolean): void {
     this.own.set(hello);
+    this.world.renew();
     this.views.renew(keep);
     for (const robot of this.world.paths.value.keys()) void this.followPath(robot, true);
   }
@@ -95,7 +103,7 @@ export class App {
   async followPath(robot: string, follow: boolean): Promise<void> {
     if (!follow) this.world.dropPath(robot);
     const answer = await this.news.tell(this.ask("path", { robot, frame: "map", follow }), ({ path }) =>
-      follow && path.points.length === 0 ? `${robot} has no path now. ${path.message}` : null);
+      follow && path.points.length === 0 ? `${robot}: ${pathWords(path)}` : null);
     if (answer && follow) this.world.setPath(answer.path);
   }
 
@@ -173,6 +181,12 @@ export class App {
     await this.loadThings();
   }
 
+  /** Asks where agents disagree, and shows it. */
+  async showConflicts(): Promise<void> {
+    this.layers.show("conflicts");
+    await this.conflicts.refresh();
+  }
+
   async sendMap(): Promise<void> {
     await this.news.tell(this.ask("send_map", { final: false }), ({ occupied }) => `Your map was sent: ${occupied} voxels.`);
   }
@@ -189,8 +203,7 @@ export class App {
   }
 
   private async minimap(agent: string, resolution: number): ReturnType<ConstructorParameters<typeof AlignSession>[1]> {
-    const { frame } = await this.link.requestFrame("minimap", { agent, resolution });
-    return frame?.kind === "points" ? frame : undefined;
+    return (await this.link.requestFrame("minimap", { agent, resolution }, "points")).frame;
   }
 
   private readonly watched = new WeakSet<object>();

@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import type { Browser, Page } from "playwright-core";
+import type { App } from "../../../hmd_bridge/web/src/app";
 import { FakeServer } from "../support/fake_server";
 import { canvasShot, launch, nextFrames, open, pageShot, settled, webFolder } from "../support/page";
 
@@ -164,6 +165,20 @@ test("labelled things and assets are listed, changed, taken away, and what was s
   await page.close();
 });
 
+test("where agents disagree is asked for, looked at, and put away with its layer", async () => {
+  const { page, errors } = await open(browser, url);
+  await settled(page, 100);
+  const looked = (): Promise<number | null> => page.evaluate(() => (window as unknown as { concord: App }).concord.conflicts.found.value!.at);
+  await page.getByRole("tab", { name: "Map" }).click();
+  await page.getByRole("button", { name: "Show where agents disagree" }).click();
+  await page.getByRole("button", { name: "robot2: 640 occupied, 0 free" }).click();
+  assert.equal(await looked(), 0);
+  await page.getByLabel("Conflicts", { exact: true }).uncheck();
+  assert.equal(await looked(), null);
+  assert.deepEqual(errors, []);
+  await page.close();
+});
+
 test("each refusal is said in clear words", async () => {
   const { page } = await open(browser, url);
   await settled(page, 100);
@@ -177,10 +192,14 @@ test("each refusal is said in clear words", async () => {
 test("a lost connection says so and comes back by itself, with the map still there", async () => {
   const { page, errors } = await open(browser, url);
   await settled(page, 100);
+  await page.getByRole("tab", { name: "Things" }).click();
+  server.propose("9");
+  await page.getByText("chair, seen by robot1").waitFor();
   server.dropConnections();
   await page.waitForFunction(() => document.body.dataset["connection"] === "lost");
   await page.waitForFunction(() => document.body.dataset["connection"] === "ready");
   assert(server.lastAsked("hello")!.resume);
+  await page.getByText("Nothing waits for your decision.").waitFor(); // the server says no more that it is open
   await settled(page, 100);
   assert.deepEqual(errors, []);
   await page.close();

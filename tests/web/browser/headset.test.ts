@@ -98,6 +98,22 @@ test("the small map is taken in the hand, put onto the other's, refined and acce
   await nextFrames(page);
   await canvasShot(page, "headset-7-added");
 
+  // Voxels moved: a point of them is shown, and where that shall go.
+  await pressButton(page, "tool box");
+  await aimAt(page, [0.5, 0, -1.6]);
+  await press(page, "select", true);
+  await aimAt(page, [1.3, 0, -2.6]);
+  await press(page, "select", false);
+  await pressButton(page, "do move");
+  for (const place of [[0.5, 0, -1.6], [1.3, 0, -2.6]] as const) {
+    await aimAt(page, [...place]);
+    await press(page, "select", true);
+    await press(page, "select", false);
+  }
+  await words(page, "moved");
+  const moved = server.lastAsked("edit")!;
+  assert(moved.op === "move" && Math.hypot(...moved.move!) > 0.1);
+
   // The keyboard names a label.
   await pressButton(page, "tool box");
   await aimAt(page, [0.5, 0, -1.6]);
@@ -110,6 +126,15 @@ test("the small map is taken in the hand, put onto the other's, refined and acce
   await pressButton(page, "text done");
   await words(page, "label");
   assert.equal((server.lastAsked("label") as { class_name: string }).class_name, "desk");
+
+  // Where agents disagree.
+  await pressButton(page, "page main");
+  await pressButton(page, "page conflicts");
+  await page.waitForFunction(() => (window as unknown as HeadsetPage).concordImmersive.panel.pageShown.title.includes("640"));
+  await pressButton(page, "do conflictNext");
+  await page.waitForFunction(() => (window as unknown as HeadsetPage).concordImmersive.panel.pageShown.title.startsWith("1 of 1"));
+  await nextFrames(page);
+  await canvasShot(page, "headset-11-conflicts");
 
   // A path, blocked, and the other one.
   await pressButton(page, "page main");
@@ -137,6 +162,23 @@ test("a reset of the origin makes another frame, unaligned, with edits blocked a
   await page.waitForFunction((n) => (window as unknown as HeadsetPage).concordImmersive.uploader.looks.value > n, sent);
   assert(server.uploads.slice(sent - 1).some(({ sequence, meshes }) => sequence === 0 && meshes > 0), "the room is sent again");
   await pageShot(page, "headset-10-reset");
+  assert.deepEqual(errors, []);
+  await page.close();
+});
+
+test("a room that somebody reset is scanned again in another frame, which is said before its first look", async () => {
+  const { page, errors } = await entered("office_small");
+  await page.waitForFunction(() => (window as unknown as HeadsetPage).concordImmersive.uploader.looks.value >= 1);
+  const first = await own(page);
+  const sent = server.uploads.length;
+  server.refuseNext("upload_mesh", "BAD_FRAME", "this frame was reset; begin another frame_id");
+  await words(page, "began anew");
+  await page.waitForFunction((n) => (window as unknown as HeadsetPage).concordImmersive.uploader.looks.value > n, sent + 1);
+  const { frameId } = await own(page);
+  assert.notEqual(frameId, first.frameId);
+  const again = server.uploads.slice(sent).find(({ sequence }) => sequence === 0)!;
+  assert(again.meshes > 0, "the room is sent again");
+  assert.equal(again.frameId, frameId);
   assert.deepEqual(errors, []);
   await page.close();
 });

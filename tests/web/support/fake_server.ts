@@ -23,7 +23,7 @@ type Done = { [K in keyof Requests]?: (body: Requests[K], socket: WebSocket, id:
 export class FakeServer {
   readonly asked: Asked[] = [];
   readonly notices: Asked[] = [];
-  readonly uploads: { sequence: number; meshes: number }[] = [];
+  readonly uploads: { sequence: number; meshes: number; frameId: string | undefined }[] = [];
   readonly map: VoxelMap = office();
   token: string | null = null;
   role: "view" | "edit" | "robot" = "robot";
@@ -109,7 +109,11 @@ export class FakeServer {
 
   private upload(socket: WebSocket, data: Buffer): void {
     const { id, sequence, meshes } = readHeaderOf(data);
-    this.uploads.push({ sequence, meshes });
+    const refusal = this.refusals.get("upload_mesh");
+    this.refusals.delete("upload_mesh");
+    if (refusal) return void socket.send(JSON.stringify({ id, error: refusal }));
+    const where = this.notices.findLast(({ name }) => name === "tracking")?.body as { frame_id: string } | undefined;
+    this.uploads.push({ sequence, meshes, frameId: where?.frame_id });
     socket.send(JSON.stringify({ id, answer: { sequence, occupied: 100 * this.uploads.length } }));
   }
 

@@ -1,9 +1,15 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { checkStruct } from "../../../hmd_bridge/web/generated/messages";
+import { checkStruct, type ConflictRegion, type Path, type Requests } from "../../../hmd_bridge/web/generated/messages";
 import { composed, distance, fromXr, fromYaw, inverse, kIdentity, levelled, poseFromXr, rotated, toXr, transformed, unit, yawOf, type Vec3 } from "../../../hmd_bridge/web/src/base/vec";
+import { News } from "../../../hmd_bridge/web/src/base/news";
+import { conflictWords, ConflictTour, cornersOf } from "../../../hmd_bridge/web/src/edit/conflict_tour";
+import { Editor } from "../../../hmd_bridge/web/src/edit/editor";
 import { outline } from "../../../hmd_bridge/web/src/edit/outline";
-import { begun, boundsOf, ended, flattened, shapeOf, shifted, volumeOf, withoutLast, withPoint, type Selection, type Tool } from "../../../hmd_bridge/web/src/edit/selection";
+import { pathWords } from "../../../hmd_bridge/web/src/edit/robot_acts";
+import { SceneDraft } from "../../../hmd_bridge/web/src/edit/scene_draft";
+import { begun, boundsOf, ended, flattened, shapeOf, volumeOf, withoutLast, withPoint, type Selection, type Tool } from "../../../hmd_bridge/web/src/edit/selection";
+import type { Ask } from "../../../hmd_bridge/web/src/link/link";
 import { clearanceColour, ribbon } from "../../../hmd_bridge/web/src/scene/ribbon";
 import { random } from "../support/random";
 
@@ -44,8 +50,6 @@ test("every shape that a tool makes is one that the schema knows, with edges and
       for (const [a, b] of outline(shape, 0.05)) {
         for (const p of [a, b]) assert(p.every((c, i) => c > bounds.min[i]! && c < bounds.max[i]!));
       }
-      const there = shifted(shape, [1, 2, 3]);
-      outline(there, 0.05).forEach(([a], i) => near(a, [outline(shape, 0.05)[i]![0][0] + 1, outline(shape, 0.05)[i]![0][1] + 2, outline(shape, 0.05)[i]![0][2] + 3]));
     }
   }
 });
@@ -91,4 +95,69 @@ test("a ribbon is as wide as asked, and red where it is tight", () => {
   assert.equal(band.indices.length, 6);
   assert(clearanceColour(0)[0] > clearanceColour(0)[1] && clearanceColour(2)[1] > clearanceColour(2)[0]);
   assert.equal(ribbon([{ p: [0, 0, 0], clearance: 1 }], 0.4, 0).indices.length, 0);
+});
+
+test("voxels are moved by two points that the person shows; one that is not shown moves nothing", async (t) => {
+  t.mock.method(globalThis, "setInterval", () => 0);
+  const edits: Requests["edit"][] = [];
+  const ask = ((name: string, body: Requests["edit"]) => {
+    if (name === "edit") edits.push(body);
+    return Promise.resolve({ edit: "e1", revision: 1, voxels: 8 });
+  }) as unknown as Ask;
+  const news = new News();
+  const editor = new Editor(ask, news, new SceneDraft(ask, news));
+  const turn = (): Promise<void> => new Promise((resolve) => setImmediate(resolve));
+  await editor.move();
+  assert.match(news.latest.value!.text, /Select something first/);
+  const shape = { kind: "box", min: [0, 0, 0], max: [1, 1, 2] } as const;
+  const show = async (...points: (Vec3 | null)[]): Promise<void> => {
+    editor.begin("box");
+    editor.point([0, 0, 0]);
+    editor.point([1, 1, 0]);
+    const moved = editor.move();
+    for (const p of points) {
+      if (p) editor.point(p);
+      else editor.cancel();
+      await turn();
+    }
+    await moved;
+  };
+  await show([1, 1, 0], [3, 1, 0.5]);
+  assert.deepEqual(edits, [{ op: "move", frame: "map", shape, move: [2, 0, 0.5] }]);
+  assert.deepEqual(editor.undoable.value, ["e1"]);
+  assert.equal(editor.selection.value, null);
+  await show([1, 1, 0], null);
+  await show(null);
+  assert.equal(edits.length, 1);
+});
+
+test("places where agents disagree are looked at one after the other, round and round", async () => {
+  const place = (x: number): ConflictRegion => ({ low: [x, 0, 0], high: [x + 1, 3, 0], voxels: 8, claims: [{ agent: "robot1", occupied: 0, free: 8 }] });
+  let regions = [place(1), place(2), place(3)];
+  const asked = (() => Promise.resolve({ regions, regions_in_all: regions.length, voxels_in_all: 24 })) as unknown as Ask;
+  const tour = new ConflictTour(asked, new News());
+  tour.step(1);
+  assert.equal(tour.region, undefined, "nothing was asked for");
+  await tour.refresh();
+  assert.equal(tour.region, undefined);
+  const steps = ([1, 1, 1, 1, -1] as const).map((by) => {
+    tour.step(by);
+    return tour.region?.low[0];
+  });
+  assert.deepEqual(steps, [1, 2, 3, 1, 3]);
+  assert.deepEqual(cornersOf(place(2), 0.5), [[1, 0, 0], [2, 2, 0.5]]);
+  assert.equal(conflictWords(place(2)), "8 voxels. robot1: 0 occupied, 8 free");
+  regions = [];
+  await tour.refresh();
+  tour.step(-1);
+  assert.equal(tour.region, undefined, "they agree by now");
+});
+
+test("of a path its reason and the planner's message are said, also of one that is there", () => {
+  const path: Path = { robot: "robot1", status: "OK", message: "", frame: "map", points: [], length: 6.32, clearance: 0.254, plan: "p", plan_number: 1, map_revision: 3, active: true };
+  assert.equal(pathWords(path), "6.3 m, at least 0.25 m of room");
+  assert.equal(pathWords({ ...path, active: false, plan_number: 3 }), "6.3 m, at least 0.25 m of room, planned 3 times, a plan only");
+  assert.equal(pathWords({ ...path, message: "nothing was heard of the map for 12 s" }), "6.3 m, at least 0.25 m of room; nothing was heard of the map for 12 s");
+  assert.equal(pathWords({ ...path, status: "NO_VALID_PATH", message: "the nearest place is 1.2 0.4" }), "No path (NO_VALID_PATH): the nearest place is 1.2 0.4");
+  assert.equal(pathWords({ ...path, status: "NO_PATH" }), "No path (NO_PATH)");
 });

@@ -1,9 +1,11 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import type { HelloAnswer } from "../../../hmd_bridge/web/generated/messages";
+import type { HelloAnswer, Pose } from "../../../hmd_bridge/web/generated/messages";
 import { Link, type Socket } from "../../../hmd_bridge/web/src/link/link";
 import { RefusedError, wordsFor } from "../../../hmd_bridge/web/src/link/failures";
 import { ServerClock } from "../../../hmd_bridge/web/src/link/clock";
+import { World } from "../../../hmd_bridge/web/src/link/world";
+import { pointsFrame } from "../support/voxel_map";
 
 interface Said { id?: number; request?: string; notice?: string; body: Record<string, unknown> }
 
@@ -18,12 +20,15 @@ class FakeSocket implements Socket {
   send(data: string | Uint8Array): void {
     if (typeof data === "string") this.sent.push(JSON.parse(data) as Said);
   }
+  /** As in browsers, which throw at other codes. */
   close(code?: number): void {
+    assert(code === undefined || code === 1000 || (code >= 3000 && code < 5000), `close(${code})`);
     this.closedWith = code ?? 1005;
     this.onclose?.();
   }
   hear(message: unknown): void {
-    this.onmessage?.({ data: typeof message === "string" ? message : JSON.stringify(message) });
+    const data = message instanceof Uint8Array ? Uint8Array.from(message).buffer : typeof message === "string" ? message : JSON.stringify(message);
+    this.onmessage?.({ data });
   }
   asked(name: string): Said[] {
     return this.sent.filter(({ request }) => request === name);
@@ -104,6 +109,65 @@ test("a lost connection is taken up: the answer that was lost is asked for again
   assert.equal((await undo).revision, 3);
 });
 
+test("blocks of the map are kept over a lost connection only while the view that they were complete for is still the last", async () => {
+  const complete = (revision: number): unknown => ({ event: "complete", body: { stream: 0, epoch: "e1", revision, map_revision: 4, synced: true } });
+  for (const [words, after, resume, keep] of [
+    ["another view was asked for", [], { epoch: "", revision: 0 }, false],
+    ["what was complete was the view before", [complete(58)], { epoch: "", revision: 0 }, false],
+    ["it was granted and not yet complete", ["answer"], { epoch: "", revision: 0 }, false],
+    ["it was complete", ["answer", complete(59)], { epoch: "e1", revision: 59 }, true],
+  ] as const) {
+    const bench = new Bench();
+    bench.link.connect();
+    await bench.enter();
+    bench.socket.hear(complete(57));
+    bench.link.request("view", { layer: "map", frame: "map", centre: [5, 0, 0], radii: [8] }).catch(() => {});
+    for (const each of after) bench.socket.hear(each === "answer" ? { id: bench.socket.asked("view")[0]!.id, answer: { stream: 0, blocks: 3, lacking: 3 } } : each);
+    await turn();
+    bench.socket.close();
+    await turn();
+    bench.pass(500);
+    await bench.enter({ resumed: true });
+    assert.deepEqual(bench.socket.asked("hello")[0]!.body["resume"], { session: "s", ...resume }, words);
+    assert.deepEqual(bench.ready, [false, keep], words);
+  }
+});
+
+test("who looked elsewhere, or away, while there was no connection keeps no blocks", async () => {
+  for (const look of [
+    (link: Link) => link.request("view", { layer: "map", frame: "map", centre: [5, 0, 0], radii: [8] }),
+    (link: Link) => link.request("view_close", { stream: 0 }),
+  ]) {
+    const bench = new Bench();
+    bench.link.connect();
+    await bench.enter();
+    bench.socket.hear({ event: "complete", body: { stream: 0, epoch: "e1", revision: 57, map_revision: 4, synced: true } });
+    await turn();
+    bench.socket.close();
+    await turn();
+    await assert.rejects(look(bench.link), /no connection/);
+    bench.pass(500);
+    await bench.enter({ resumed: true });
+    assert.deepEqual(bench.ready, [false, false]);
+  }
+});
+
+test("a frame comes with its answer; an answer whose frame was lost says to ask again", async () => {
+  const bench = new Bench();
+  bench.link.connect();
+  await bench.enter();
+  const ask = (): ReturnType<typeof bench.link.requestFrame<"minimap", "points">> => bench.link.requestFrame("minimap", { agent: "robot1", resolution: 0.5 }, "points");
+  const answer = { agent: "robot1", frame_id: "a", points: 1 };
+  const whole = ask();
+  const lost = assert.rejects(ask(), /Ask again/);
+  const [first, second] = bench.socket.asked("minimap");
+  bench.socket.hear(pointsFrame(first!.id!, [1, 2, 3]));
+  bench.socket.hear({ id: first!.id, answer });
+  bench.socket.hear({ id: second!.id, answer });
+  assert.deepEqual([...(await whole).frame.points], [1, 2, 3]);
+  await lost;
+});
+
 test("a session that is gone says so to who waits, and keeps no blocks", async () => {
   const bench = new Bench();
   bench.link.connect();
@@ -150,9 +214,36 @@ test("credit is said again as frames are taken in, and a server that talks nonse
   assert.deepEqual(credits, [4_000_000, 4_000_000 + 2 * frame.length]);
   bench.socket.hear("nonsense");
   await turn();
-  assert.equal(bench.socket.closedWith, 1002);
+  assert.equal(bench.socket.closedWith, 4002);
   await turn();
   assert.equal(bench.link.state.value.state, "lost");
+});
+
+test("a page that fails at a message connects again and hears the next ones", async () => {
+  const bench = new Bench();
+  bench.link.connect();
+  await bench.enter();
+  const heard: string[] = [];
+  let failing = true;
+  bench.link.onEvent = ({ event }) => {
+    if (failing) throw new Error("a watcher failed");
+    heard.push(event);
+  };
+  const { error } = console;
+  console.error = (what: unknown) => void heard.push(String(what));
+  bench.socket.hear({ event: "people", body: { people: [] } });
+  await turn();
+  console.error = error;
+  assert.equal(bench.socket.closedWith, 4002);
+  await turn();
+  const now = bench.link.state.value;
+  assert(now.state === "lost" && now.why.includes("a watcher failed"));
+  failing = false;
+  bench.pass(500);
+  await bench.enter({ resumed: true });
+  bench.socket.hear({ event: "people", body: { people: [] } });
+  await turn();
+  assert.deepEqual(heard, ["Error: a watcher failed", "people"]);
 });
 
 test("a network that went silent is noticed", async () => {
@@ -173,4 +264,21 @@ test("the server's clock is told within half of the shortest way", () => {
   assert(Math.abs(clock.utime(2001.5) - 8_050_500) < 1);
   clock.hear(3000, 9_000_000, 9_000_000, 3900); // a slow one tells nothing
   assert(Math.abs(clock.utime(2001.5) - 8_050_500) < 1);
+});
+
+test("after a connection began only what is said to be open then waits for a decision", () => {
+  const world = new World();
+  const at: Pose = { position: [0, 0, 0], rotation: [0, 0, 0, 1] };
+  const propose = (detection: string, open = true): void =>
+    world.hear({ event: "detection", body: { detection, class_name: "chair", T_map_object: at, score: 0.8, by: "robot1", open } });
+  const evidence = { overlap: 0.7, rms: 0.03, free_space_violation: 0, iterations: 9, ms: 9, loose: [] };
+  propose("d1");
+  propose("d2");
+  propose("d1", false);
+  world.hear({ event: "alignment", body: { agent: "robot1", align: "a1", T_target_source: at, slip: 0.4, slip_angle: 0.1, evidence, open: true } });
+  const open = (): string[] => [...world.detections.value.map(({ detection }) => detection), ...world.slips.value.map(({ align }) => align)];
+  assert.deepEqual(open(), ["d2", "a1"]);
+  world.renew();
+  propose("d3");
+  assert.deepEqual(open(), ["d3"]);
 });

@@ -3,7 +3,7 @@ import { test } from "node:test";
 import type { Agent, Pose } from "../../../hmd_bridge/web/generated/messages";
 import { composed, distance, fromYaw, kIdentity, transformed, type Vec3 } from "../../../hmd_bridge/web/src/base/vec";
 import { keyboardPage, typed } from "../../../hmd_bridge/web/src/xr/keyboard";
-import { corrected } from "../../../hmd_bridge/web/src/xr/map_anchor";
+import { corrected, MapAnchor } from "../../../hmd_bridge/web/src/xr/map_anchor";
 import { blockedWords, OwnFrame } from "../../../hmd_bridge/web/src/xr/own_frame";
 import { buttonAt, kPanelWidth, panelHeight, placed } from "../../../hmd_bridge/web/src/xr/panel_layout";
 import { fanTriangles, payloads, RoomScan, type Seen } from "../../../hmd_bridge/web/src/xr/room_scan";
@@ -67,6 +67,55 @@ test("what the device learns of its anchor moves the map with it", () => {
   const now = corrected(T_own_map, then, composed(step, then));
   assert(distance(transformed(now, p), transformed(step, transformed(T_own_map, p))) < 1e-9);
   assert(distance(corrected(T_own_map, then, then).position, T_own_map.position) < 1e-9);
+});
+
+/** A device's frames with one anchor, which it moves. In WebXR's y-up space. */
+class AnchoringDevice {
+  readonly anchors: { deleted: boolean }[] = [];
+  at: { x: number; y: number; z: number } | null = { x: 0, y: 0, z: 0 };
+  readonly space = {} as XRReferenceSpace;
+  readonly viewer = { position: { x: 0, y: 1.6, z: 0 } } as XRRigidTransform;
+  readonly frame = {
+    createAnchor: () => {
+      const anchor = { deleted: false, anchorSpace: {}, delete: () => void (anchor.deleted = true) };
+      this.anchors.push(anchor);
+      return Promise.resolve(anchor);
+    },
+    getPose: () => this.at && { transform: { position: this.at, orientation: { x: 0, y: 0, z: 0, w: 1 } } },
+  } as unknown as XRFrame;
+}
+
+test("an anchor lasts while the server says the same place again and while tracking is lost for a moment", async () => {
+  Object.assign(globalThis, { XRRigidTransform: class {} });
+  const device = new AnchoringDevice();
+  let ids = 0;
+  const own = new OwnFrame("headset-1", () => `f${++ids}`);
+  const anchor = new MapAnchor();
+  own.standing.watch((standing) => anchor.stand(standing, own.frameId.value));
+  const x = async (): Promise<number | undefined> => {
+    anchor.update(device.frame, device.space, device.viewer);
+    await Promise.resolve();
+    return anchor.update(device.frame, device.space, device.viewer)?.position[0];
+  };
+  assert.equal(await x(), undefined);
+  own.hear(agentIn(own.frameId.value));
+  assert.equal(await x(), 0);
+  device.at = { x: 0.03, y: 0, z: 0 };
+  assert.equal(await x(), 0.03);
+  for (let second = 0; second < 3; ++second) own.hear(agentIn(own.frameId.value));
+  assert.equal(await x(), 0.03, "the same was said again");
+  own.setTracked(false);
+  device.at = null;
+  assert.equal(await x(), 0.03, "tracking is lost");
+  own.setTracked(true);
+  device.at = { x: 0.04, y: 0, z: 0 };
+  assert.equal(await x(), 0.04);
+  assert.deepEqual(device.anchors.map(({ deleted }) => deleted), [false]);
+  own.hear({ ...agentIn(own.frameId.value), T_map_agent: { position: [-1, 0, 0], rotation: [0, 0, 0, 1] } });
+  assert.equal(await x(), 1, "placed elsewhere");
+  own.reset();
+  assert.equal(await x(), undefined, "another frame has no place yet");
+  assert.deepEqual(device.anchors.map(({ deleted }) => deleted), [true, true]);
 });
 
 test("buttons of a panel lie inside it, do not overlap, and are found where they are", () => {

@@ -20,7 +20,7 @@ export interface Aligning {
   busy: boolean;
 }
 
-export type AskMinimap = (agent: string, resolution: number) => Promise<PointsFrame | undefined>;
+export type AskMinimap = (agent: string, resolution: number) => Promise<PointsFrame>;
 
 const kResolution = 0.5;
 
@@ -40,6 +40,7 @@ export class AlignSession {
     const frame = await this.news.tell(this.minimap(source, kResolution), () => null);
     if (!frame) return;
     const targetFrame = target === undefined ? null : await this.news.tell(this.minimap(target, kResolution), () => null);
+    if (target !== undefined && !targetFrame) return;
     const targetPoints = targetFrame?.points ?? null;
     const position: Vec3 = targetPoints ? sub(middleOf(targetPoints), middleOf(frame.points)) : [0, 0, 0];
     const guess = known ?? { position, rotation: kIdentity.rotation };

@@ -3,7 +3,7 @@ import type { EditOp, Requests, Answers, Shape, Volume, ZoneKind } from "../../g
 import { counted, type News } from "../base/news";
 import type { Ask } from "../link/link";
 import { Signal } from "../base/signal";
-import type { Vec3 } from "../base/vec";
+import { sub, type Vec3 } from "../base/vec";
 import { begun, boundsOf, ended, shapeOf, volumeOf, withoutLast, withPoint, type Selection, type Tool } from "./selection";
 import type { SceneDraft } from "./scene_draft";
 
@@ -95,6 +95,17 @@ export class Editor {
     if (!answer) return;
     this.did(answer.edit);
     this.cancel();
+  }
+
+  /** Moves what is selected: the person shows a point of it, and where that shall go. */
+  async move(): Promise<void> {
+    const selection = this.selection.value;
+    if (!this.shape()) return;
+    const from = await this.askPoint("Click a point of what shall move.");
+    const to = from && (await this.askPoint("Click where that point shall go."));
+    if (!to) return;
+    this.selection.set(selection);
+    await this.apply("move", sub(to, from));
   }
 
   /** Something was done that can be undone by this id. */

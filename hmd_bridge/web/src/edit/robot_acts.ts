@@ -3,9 +3,11 @@ import type { Path } from "../../generated/messages";
 import type { App } from "../app";
 import { fromYaw, type Vec3 } from "../base/vec";
 
-export function pathWords({ status, message, length, clearance, plan_number }: Path): string {
-  if (status !== "OK") return message || status;
-  return `${length.toFixed(1)} m, at least ${clearance.toFixed(2)} m of room${plan_number > 1 ? `, planned ${plan_number} times` : ""}`;
+/** The planner's message says what else there is to know, also of a path that is there: the zones, the nearest place, that its map is old. */
+export function pathWords({ status, message, length, clearance, plan_number, active }: Path): string {
+  if (status !== "OK") return `No path (${status})${message && `: ${message}`}`;
+  const times = plan_number > 1 ? `, planned ${plan_number} times` : "";
+  return `${length.toFixed(1)} m, at least ${clearance.toFixed(2)} m of room${times}${active ? "" : ", a plan only"}${message && `; ${message}`}`;
 }
 
 export async function whatIf(app: App, robot: string): Promise<void> {
@@ -19,7 +21,7 @@ export async function send(app: App, robot: string): Promise<void> {
   const goal = await app.editor.askPoint(`Click where ${robot} shall go.`);
   if (!goal) return;
   const T_frame_goal = { position: goal, rotation: fromYaw(0) };
-  const answer = await app.news.tell(app.ask("goal", { robot, frame: "map", T_frame_goal }), ({ path }) => `${robot} is on its way: ${pathWords(path)}.`);
+  const answer = await app.news.tell(app.ask("goal", { robot, frame: "map", T_frame_goal }), ({ path }) => `${robot}${path.status === "OK" ? " is on its way" : ""}: ${pathWords(path)}`);
   if (answer) app.world.setPath(answer.path);
 }
 

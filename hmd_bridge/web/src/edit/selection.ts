@@ -101,20 +101,3 @@ function cornersOf(shape: Shape): Vec3[] {
       return []; // no tool makes them
   }
 }
-
-/** The same shape elsewhere: what a move would come to. */
-export function shifted(shape: Shape, by: Vec3): Shape {
-  switch (shape.kind) {
-    case "line":
-    case "area":
-      return { ...shape, points: shape.points.map((p) => add(p, by)) };
-    case "box":
-      return { ...shape, min: add(shape.min, by), max: add(shape.max, by) };
-    case "prism":
-      return { ...shape, points: shape.points.map(([x, y]) => [x + by[0], y + by[1]]), low: shape.low + by[2], high: shape.high + by[2] };
-    case "oriented_box":
-      return { ...shape, T_frame_box: { ...shape.T_frame_box, position: add(shape.T_frame_box.position, by) } };
-    case "voxels":
-      return shape; // stays: its lattice has no metres
-  }
-}

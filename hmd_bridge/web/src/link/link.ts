@@ -2,12 +2,12 @@
  * The connection to the bridge: requests and their answers, events, frames, credit, and coming back after it was lost.
  * Messages are taken strictly in the order in which they came, so what depends on order can rely on it.
  */
-import { VERSION, type Answers, type Code, type HelloAnswer, type HelloRequest, type Notices, type Requests } from "../../generated/messages";
+import { VERSION, type Answers, type Code, type Events, type HelloAnswer, type HelloRequest, type Notices, type Requests } from "../../generated/messages";
 import { answerTo, readText, TextError, type EventMessage, type ServerText } from "../protocol/envelope";
 import { FrameError, readFrame, type CellsFrame, type PointsFrame, type ServerFrame } from "../protocol/frames";
 import { Signal } from "../base/signal";
 import { ServerClock } from "./clock";
-import { RefusedError } from "./failures";
+import { explain, RefusedError } from "./failures";
 
 /** What this needs of a WebSocket. */
 export interface Socket {
@@ -44,15 +44,24 @@ interface Pending {
   name: keyof Answers;
   data: string | Uint8Array<ArrayBuffer>;
   frame?: AskedFrame;
+  /** It changes what of the map is looked at. */
+  looks: boolean;
   resolve: (result: { fields: unknown; frame: AskedFrame | undefined }) => void;
   reject: (error: Error) => void;
 }
 
 const kOpen = 1;
+/** Of the codes for applications: browsers let pages send no other but 1000. */
+const kNotTaken = 4002;
 const kCreditAhead = 4_000_000;
 const kCheckMs = 10_000;
 const kSilentMs = 25_000;
 const kMaxWaitSeconds = 15;
+
+const kMapStream = 0;
+function looksElsewhere(name: keyof Requests, body: Requests[keyof Requests]): boolean {
+  return name === "view" ? (body as Requests["view"]).layer === "map" : name === "view_close" && (body as Requests["view_close"]).stream === kMapStream;
+}
 
 export class Link {
   readonly state = new Signal<LinkState>({ state: "connecting" });
@@ -64,6 +73,7 @@ export class Link {
 
   private socket: Socket | null = null;
   private hello: HelloAnswer | null = null;
+  /** What the server says it knows to be here of the map; null from a view of it on until that is complete. */
   private lastComplete: { epoch: string; revision: number } | null = null;
   private lastId = 0;
   private readonly pending = new Map<number, Pending>();
@@ -95,13 +105,19 @@ export class Link {
 
   /** Rejects with RefusedError, or Error where the connection was lost for good. */
   async request<K extends keyof Requests>(name: K, body: Requests[K]): Promise<Answers[K]> {
-    return (await this.requestFrame(name, body)).answer;
+    return (await this.asked(name, body)).answer;
   }
 
-  /** As request(), with the frame that came before the answer. */
-  async requestFrame<K extends keyof Requests>(name: K, body: Requests[K]): Promise<{ answer: Answers[K]; frame: AskedFrame | undefined }> {
+  /** As request(), with the frame that came before the answer. Rejects if it was lost with a connection. */
+  async requestFrame<K extends keyof Requests, F extends AskedFrame["kind"]>(name: K, body: Requests[K], kind: F): Promise<{ answer: Answers[K]; frame: AskedFrame & { kind: F } }> {
+    const { answer, frame } = await this.asked(name, body);
+    if (frame?.kind !== kind) throw new Error("What was asked for was lost on its way. Ask again.");
+    return { answer, frame: frame as AskedFrame & { kind: F } };
+  }
+
+  private async asked<K extends keyof Requests>(name: K, body: Requests[K]): Promise<{ answer: Answers[K]; frame: AskedFrame | undefined }> {
     const id = ++this.lastId;
-    const { fields, frame } = await this.ask(id, name, JSON.stringify({ id, request: name, body }));
+    const { fields, frame } = await this.ask(id, name, JSON.stringify({ id, request: name, body }), looksElsewhere(name, body));
     return { answer: answerTo(name, fields), frame };
   }
 
@@ -118,15 +134,16 @@ export class Link {
     if (this.state.value.state === "ready" && socket?.readyState === kOpen) socket.send(JSON.stringify({ notice: name, body }));
   }
 
-  private ask(id: number, name: keyof Answers, data: Pending["data"]): ReturnType<typeof this.wait> {
+  private ask(id: number, name: keyof Answers, data: Pending["data"], looks = false): ReturnType<typeof this.wait> {
+    if (looks) this.lastComplete = null; // also without a connection: the first view of the next one is another
     if (this.state.value.state !== "ready") return Promise.reject(new Error("There is no connection to the server now."));
-    const answered = this.wait(id, name, data);
+    const answered = this.wait(id, name, data, looks);
     this.socket?.send(data);
     return answered;
   }
 
-  private wait(id: number, name: keyof Answers, data: Pending["data"]): Promise<{ fields: unknown; frame: AskedFrame | undefined }> {
-    return new Promise((resolve, reject) => this.pending.set(id, { name, data, resolve, reject }));
+  private wait(id: number, name: keyof Answers, data: Pending["data"], looks = false): Promise<{ fields: unknown; frame: AskedFrame | undefined }> {
+    return new Promise((resolve, reject) => this.pending.set(id, { name, data, looks, resolve, reject }));
   }
 
   private open(ticket: string | undefined): void {
@@ -153,7 +170,7 @@ export class Link {
     const body: HelloRequest = { version: VERSION, ...this.options.who() };
     if (ticket !== undefined) body.ticket = ticket;
     if (this.hello) {
-      const { epoch, revision } = this.lastComplete ?? { epoch: this.hello.epoch, revision: 0 };
+      const { epoch, revision } = this.lastComplete ?? { epoch: "", revision: 0 }; // of no epoch: nothing is held
       body.resume = { session: this.hello.session, epoch, revision };
     }
     this.wait(id, "hello", "")
@@ -218,17 +235,19 @@ export class Link {
       if (typeof data === "string") this.takeText(readText(data));
       else await this.takeFrame(data);
     } catch (error) {
-      if (!(error instanceof TextError || error instanceof FrameError)) throw error;
-      // A server that says what cannot be understood cannot be trusted with what is held: begin anew.
-      this.bye = `The server said something that this page does not understand: ${error.message}.`;
-      this.socket?.close(1002);
+      // What is held cannot be trusted now, whether the server said what cannot be understood or this page failed at it: begin anew.
+      const understood = !(error instanceof TextError || error instanceof FrameError);
+      if (understood) console.error(error);
+      this.bye = `${understood ? "This page failed at what the server said" : "The server said something that this page does not understand"}: ${explain(error)}.`;
+      this.lastComplete = null;
+      this.socket?.close(kNotTaken);
     }
   }
 
   private takeText(text: ServerText): void {
     if (text.what === "event") {
       if (text.event === "bye") this.bye = text.body.message;
-      if (text.event === "complete" && text.body.stream === 0) this.lastComplete = { epoch: text.body.epoch, revision: text.body.revision };
+      if (text.event === "complete" && text.body.stream === kMapStream) this.completed(text.body);
       this.onEvent(text);
       return;
     }
@@ -237,6 +256,11 @@ export class Link {
     this.pending.delete(text.id);
     if (text.what === "error") pending.reject(new RefusedError(text.refusal));
     else pending.resolve({ fields: text.fields, frame: pending.frame });
+  }
+
+  /** While a view waits for its answer this is still about the one before. */
+  private completed({ epoch, revision }: Events["complete"]): void {
+    if (![...this.pending.values()].some(({ looks }) => looks)) this.lastComplete = { epoch, revision };
   }
 
   private async takeFrame(data: ArrayBuffer): Promise<void> {

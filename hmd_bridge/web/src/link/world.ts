@@ -35,6 +35,12 @@ export class World {
     return this.agents.value.filter(({ agent, type }) => type !== "headset" && type !== "map" && agent !== this.own);
   }
 
+  /** A connection began: what was decided meanwhile is not said any more, what is open comes again. */
+  renew(): void {
+    this.detections.set([]);
+    this.slips.set([]);
+  }
+
   setPath(path: Path): void {
     this.paths.set(new Map(this.paths.value).set(path.robot, path));
   }

@@ -3,6 +3,7 @@ import type { App } from "../app";
 import { counted } from "../base/news";
 import { button, el, field, live, none, section, select } from "../base/dom";
 import { Signal } from "../base/signal";
+import { conflictWords, cornersOf } from "../edit/conflict_tour";
 import type { Agent, ConflictRegion, SavedMap } from "../../generated/messages";
 import { kLayers } from "../scene/map_layers";
 
@@ -44,9 +45,10 @@ function gridSection(app: App): HTMLElement {
   const low = height(0.2, "Grid from, metres");
   const high = height(1.5, "Grid to, metres");
   const show = async (): Promise<void> => {
-    const asked = app.link.requestFrame("grid", { z: [Number(low.value), Number(high.value)] });
+    const asked = app.link.requestFrame("grid", { z: [Number(low.value), Number(high.value)] }, "cells");
     const answer = await app.news.tell(asked, ({ answer: { occupied, free } }) => `${counted(occupied, "cell")} occupied, ${counted(free, "cell")} free.`);
-    if (answer?.frame?.kind === "cells") app.grid.show(answer.frame, Number(low.value));
+    const refused = answer && app.grid.show(answer.frame, Number(low.value));
+    if (refused) app.news.failed(refused);
   };
   return section("2D grid", el("div", { class: "row" }, "from", low, "to", high, "m", button("Show", () => void show()), button("Hide", () => app.grid.hide())));
 }
@@ -84,24 +86,21 @@ export function confirmed(title: string, question: string, act: () => Promise<un
 }
 
 function conflictsSection(app: App): HTMLElement {
-  const found = new Signal<{ regions: ConflictRegion[]; all: number } | null>(null);
-  const refresh = async (): Promise<void> => {
-    const answer = await app.news.tell(app.ask("conflicts", { most: 20 }), () => null);
-    if (answer) found.set({ regions: answer.regions, all: answer.voxels_in_all });
-    app.layers.show("conflicts");
-  };
+  const { found } = app.conflicts;
   const list = live((redraw) => found.watch(redraw), () => {
     if (!found.value) return [];
     if (found.value.regions.length === 0) return [none("All agents agree.")];
-    return [el("p", { class: "quiet" }, `${counted(found.value.all, "voxel")} in dispute; the largest places first:`), ...found.value.regions.map((region) => conflictRow(app, region))];
+    return [el("p", { class: "quiet" }, `${counted(found.value.voxels, "voxel")} in dispute; the largest places first:`), ...found.value.regions.map((region, i) => conflictRow(app, region, i))];
   });
-  return section("Conflicts", button("Show where agents disagree", () => void refresh()), list);
+  return section("Conflicts", button("Show where agents disagree", () => void app.showConflicts()), list);
 }
 
-function conflictRow(app: App, { low, high, voxels, claims }: ConflictRegion): HTMLElement {
-  const r = app.layers.resolution;
-  const words = claims.map(({ agent, occupied, free }) => `${agent}: ${occupied} occupied, ${free} free`).join("; ");
-  return button(`${counted(voxels, "voxel")}. ${words}`, () => app.eyes.lookAt([low[0] * r, low[1] * r, low[2] * r], [(high[0] + 1) * r, (high[1] + 1) * r, (high[2] + 1) * r]), { class: "line" });
+function conflictRow(app: App, region: ConflictRegion, i: number): HTMLElement {
+  const look = (): void => {
+    app.conflicts.look(i);
+    app.eyes.lookAt(...cornersOf(region, app.layers.resolution));
+  };
+  return button(conflictWords(region), look, { class: "line" });
 }
 
 function mapsSection(app: App): HTMLElement {

@@ -12,12 +12,16 @@ export class GridSheet {
 
   constructor(
     private readonly resolution: number,
+    /** Cells that the graphics card takes along one side. */
+    private readonly most: number,
     private readonly drawn: () => void,
   ) {}
 
-  /** @param z metres */
-  show({ low, size, cells }: CellsFrame, z: number): void {
+  /** Answers what the person is to be told, null if it is drawn. @param z metres */
+  show({ low, size, cells }: CellsFrame, z: number): string | null {
     this.hide();
+    const side = Math.max(size[0], size[1]);
+    if (side > this.most) return `The grid is ${side} cells wide; this device draws at most ${this.most}.`;
     const pixels = new Uint8Array(4 * cells.length);
     cells.forEach((cell, i) => pixels.set(cell === 2 ? kOccupied : cell === 1 ? kFree : [0, 0, 0, 0], 4 * i));
     const texture = new DataTexture(pixels, size[0], size[1]);
@@ -30,6 +34,7 @@ export class GridSheet {
     sheet.position.set((low[0] + size[0] / 2) * r, (low[1] + size[1] / 2) * r, z);
     this.group.add(sheet);
     this.drawn();
+    return null;
   }
 
   hide(): void {

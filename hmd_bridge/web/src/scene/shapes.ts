@@ -1,7 +1,7 @@
 /** Objects of the scene for lines, volumes, bands and names. Whoever makes one disposes of it with `discard`. */
 import {
-  BoxGeometry, BufferAttribute, BufferGeometry, CanvasTexture, DoubleSide, ExtrudeGeometry, Group, LineBasicMaterial, LineSegments, Mesh,
-  MeshBasicMaterial, Object3D, Shape as Outline, Sprite, SpriteMaterial, Vector2, type Material,
+  BoxGeometry, BufferAttribute, BufferGeometry, CanvasTexture, DoubleSide, ExtrudeGeometry, Group, InstancedMesh, LineBasicMaterial, LineSegments, Mesh,
+  MeshBasicMaterial, Object3D, Shape as Outline, Sprite, SpriteMaterial, Vector2, type Material, type Texture,
 } from "three";
 import type { Path, Shape, Volume } from "../../generated/messages";
 import { outline, type Edge } from "../edit/outline";
@@ -104,8 +104,9 @@ export function discard(object: Object3D): void {
   object.traverse((part) => {
     if (part instanceof Mesh || part instanceof LineSegments || part instanceof Sprite) {
       if (!(part instanceof Sprite)) (part.geometry as BufferGeometry).dispose();
-      for (const material of [part.material].flat() as Material[]) {
-        if (material instanceof SpriteMaterial) material.map?.dispose();
+      if (part instanceof InstancedMesh) part.dispose();
+      for (const material of [part.material].flat() as (Material & { map?: Texture | null })[]) {
+        material.map?.dispose();
         material.dispose();
       }
     }

@@ -16,11 +16,4 @@ export function poseOf(matrix: Matrix4): Pose {
   return { position: position.toArray(), rotation: [rotation.x, rotation.y, rotation.z, rotation.w] };
 }
 
-/** T_target_source of two objects in one scene. */
-export function relativePose(target: Object3D, source: Object3D): Pose {
-  target.updateWorldMatrix(true, false);
-  source.updateWorldMatrix(true, false);
-  return poseOf(new Matrix4().copy(target.matrixWorld).invert().multiply(source.matrixWorld));
-}
-
 export const vec = (v: Vector3): Vec3 => [v.x, v.y, v.z];

@@ -1,9 +1,10 @@
 /** Draws who and what is there besides voxels: robots, people, zones, leases, paths, detections. In the map's frame. */
 import { ConeGeometry, CylinderGeometry, Group, Mesh, MeshBasicMaterial, Object3D, SphereGeometry } from "three";
-import type { Person, RobotPose } from "../../generated/messages";
+import type { ConflictRegion, Person, RobotPose } from "../../generated/messages";
+import { cornersOf, type ConflictTour } from "../edit/conflict_tour";
 import type { World } from "../link/world";
 import type { Signal } from "../base/signal";
-import { kAllowContact, kAsset, kLease, kNoGo, colourOf } from "./colours";
+import { kAllowContact, kAsset, kConflict, kLease, kNoGo, colourOf } from "./colours";
 import { discard, edgesObject, nameSprite, pathObject, shapeObject } from "./shapes";
 import { place } from "./three_pose";
 
@@ -12,6 +13,7 @@ export class WorldOverlay {
 
   constructor(
     world: World,
+    conflicts: ConflictTour,
     private readonly resolution: number,
     private readonly drawn: () => void,
   ) {
@@ -21,6 +23,7 @@ export class WorldOverlay {
       zones.map((zone) => this.placed(zone.T_map_zone, shapeObject(zone.volume, this.resolution, zone.zone_kind === "no_go" ? kNoGo : kAllowContact, 0.16))));
     this.redraw(world.leases, (leases) => leases.map((lease) => this.placed(lease.T_map_lease, shapeObject(lease.volume, this.resolution, kLease, 0.05))));
     this.redraw(world.paths, (paths) => [...paths.values()].filter(({ points }) => points.length > 1).map(pathObject));
+    this.redraw(conflicts.found, () => (conflicts.region ? [conflictObject(conflicts.region, this.resolution)] : []));
     this.redraw(world.detections, (detections) =>
       detections.map((detection) => {
         const object = nameSprite(`${detection.class_name}?`, kAsset, 0.22);
@@ -43,6 +46,12 @@ export class WorldOverlay {
       this.drawn();
     });
   }
+}
+
+/** The place that is looked at; its voxels are a layer. */
+function conflictObject(region: ConflictRegion, resolution: number): Object3D {
+  const [min, max] = cornersOf(region, resolution);
+  return shapeObject({ kind: "box", min, max }, resolution, kConflict, 0.1);
 }
 
 function robotObject({ agent, T_map_base, stale }: RobotPose): Object3D {

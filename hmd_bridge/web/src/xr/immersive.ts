@@ -2,7 +2,7 @@
 import { Color, Group, Matrix4, Vector3 } from "three";
 import type { App } from "../app";
 import type { Vec3 } from "../base/vec";
-import { inverse, kIdentity, poseFromXr } from "../base/vec";
+import { kIdentity, poseFromXr } from "../base/vec";
 import { kBackground } from "../scene/colours";
 import { vec } from "../scene/three_pose";
 import { MapAnchor, poseOfTransform } from "./map_anchor";
@@ -49,7 +49,7 @@ export class Immersive {
     readonly own: OwnFrame,
   ) {
     const { stage } = app;
-    this.uploader = new RoomUploader(app.link, app.news, () => this.room.forget());
+    this.uploader = new RoomUploader(app.link, app.news, () => this.room.forget(), () => own.reset());
     this.room = new RoomView(this.uploader);
     this.menu = new Menu(app, own, this.room);
     this.table = new MiniTable(app.align, (table) => this.putAhead(table, 0.75, -0.35));
@@ -62,7 +62,10 @@ export class Immersive {
     this.pointers.onEnd = (pointer, act) => this.ended(pointer, act);
     app.world.agents.watch(() => own.hear(app.world.agent(own.agent)));
     own.standing.watch(() => this.stand());
-    own.frameId.onChange(() => this.uploader.restart());
+    own.frameId.onChange(() => {
+      this.uploader.restart();
+      this.saidWhere = -Infinity;
+    });
     stage.onFrame.add((_, frame) => frame && this.frame(frame));
   }
 
@@ -116,13 +119,13 @@ export class Immersive {
     const aligned = standing.state === "aligned";
     if (!this.session) {
       editor.blocked.set(null);
-      this.anchor.set(null);
+      this.anchor.stand(null, this.own.frameId.value);
       stage.setMapPose(kIdentity);
       stage.map.visible = true;
       return;
     }
     editor.blocked.set(blockedWords(standing));
-    if (standing.state !== "lost") this.anchor.set(aligned ? inverse(standing.T_map_own) : null);
+    this.anchor.stand(standing, this.own.frameId.value);
     stage.map.visible = aligned;
     if (aligned) layers.setCentre(this.head());
   }
@@ -137,12 +140,13 @@ export class Immersive {
       const T_own_map = this.anchor.update(frame, this.space, viewer.transform);
       if (T_own_map) this.app.stage.setMapPose(T_own_map);
       if (this.placePanel) this.putPanelAhead();
-      if (this.own.standing.value.state !== "lost") this.room.look(frame, this.space, viewer.transform, now);
     }
     this.pointers.update();
     for (const pointer of this.pointers.all) this.aim(pointer, now);
     this.table.update();
+    // A new frame is said before the first look in it: the server takes a look to be in the frame that was said last.
     if (now - this.saidWhere > kTrackingMs) this.sayWhere(viewer?.transform, now);
+    if (viewer && this.own.standing.value.state !== "lost") this.room.look(frame, this.space, viewer.transform, now);
   }
 
   private sayWhere(viewer: XRRigidTransform | undefined, now: number): void {

@@ -1,6 +1,7 @@
 /** Holds the map in its place in the room: T_own_map, corrected by what the device learns about an anchor near by. */
 import type { Pose } from "../../generated/messages";
 import { composed, inverse, poseFromXr } from "../base/vec";
+import type { Standing } from "./own_frame";
 
 /** A pose of WebXR, y up. */
 export function poseOfTransform({ position: p, orientation: q }: XRRigidTransform): Pose {
@@ -16,11 +17,23 @@ export class MapAnchor {
   private anchor: XRAnchor | null = null;
   private then: Pose | null = null;
   private wanted: Pose | null = null;
+  /** The same as corrected last. */
+  private shown: Pose | null = null;
+  /** What `wanted` came from. */
+  private placed: string | null = null;
   private asked = false;
 
-  /** The map was placed here; null: it has no place. */
-  set(T_own_map: Pose | null): void {
-    this.wanted = T_own_map;
+  /**
+   * Where the device stands, as often as it is said: an anchor lasts until the map is placed elsewhere, or the frame is another.
+   * One that lost its tracking finds the map where it left it. Null: the map has no place here.
+   */
+  stand(standing: Standing | null, frameId: string): void {
+    if (standing?.state === "lost") return;
+    const T_map_own = standing?.state === "aligned" ? standing.T_map_own : null;
+    const placed = T_map_own && JSON.stringify([frameId, T_map_own.position, T_map_own.rotation]);
+    if (placed === this.placed) return;
+    this.placed = placed;
+    this.wanted = this.shown = T_map_own && inverse(T_map_own);
     this.anchor?.delete();
     this.anchor = null;
     this.then = null;
@@ -32,10 +45,10 @@ export class MapAnchor {
     if (!this.wanted) return null;
     if (!this.asked) this.ask(frame, space, viewer);
     const now = this.anchor && frame.getPose(this.anchor.anchorSpace, space);
-    if (!now) return this.wanted;
+    if (!now) return this.shown;
     const pose = poseFromXr(poseOfTransform(now.transform));
     this.then ??= pose;
-    return corrected(this.wanted, this.then, pose);
+    return (this.shown = corrected(this.wanted, this.then, pose));
   }
 
   private ask(frame: XRFrame, space: XRReferenceSpace, viewer: XRRigidTransform): void {

@@ -1,9 +1,12 @@
 /** The menu in the scene: pages of buttons, and what they do. */
 import type { App } from "../app";
+import { counted } from "../base/news";
 import { Signal } from "../base/signal";
-import { correct, refer, send, whatIf } from "../edit/robot_acts";
+import { add, distance, scale } from "../base/vec";
+import { conflictWords, cornersOf } from "../edit/conflict_tour";
+import { correct, pathWords, refer, send, whatIf } from "../edit/robot_acts";
 import { kTools, type Tool } from "../edit/selection";
-import type { Asset, Instance } from "../../generated/messages";
+import type { Asset, ConflictRegion, Instance } from "../../generated/messages";
 import { evidenceWords } from "../panels/align_panel";
 import { vec } from "../scene/three_pose";
 import { keyboardPage, typed } from "./keyboard";
@@ -11,7 +14,7 @@ import type { OwnFrame } from "./own_frame";
 import type { PanelButton, PanelPage } from "./panel_layout";
 import type { RoomView } from "./room_view";
 
-type PageName = "main" | "edit" | "robots" | "align" | "things";
+type PageName = "main" | "edit" | "robots" | "align" | "things" | "conflicts";
 const kMostRows = 5;
 const kNudge = 0.25;
 const kBack: PanelButton = { id: "page main", title: "‹ Menu" };
@@ -34,10 +37,10 @@ export class Menu {
   ) {
     this.page = new Signal(this.make());
     const renew = (): void => this.page.set(this.make());
-    const { editor, align, world, news, draft } = app;
+    const { editor, align, conflicts, world, news, draft } = app;
     const shown: { onChange: (watcher: () => void) => unknown }[] = [
       editor.selection, editor.blocked, editor.question, editor.undoable, editor.redoable, align.current, align.referred, world.agents, world.detections,
-      world.paths, news.latest, draft.open, own.standing, room.scanning, this.atHand,
+      conflicts.found, world.paths, news.latest, draft.open, own.standing, room.scanning, this.atHand,
     ];
     for (const signal of shown) signal.onChange(renew);
   }
@@ -67,6 +70,7 @@ export class Menu {
     cancel: () => this.app.editor.cancel(),
     add: () => void this.app.editor.apply("add"),
     delete: () => void this.app.editor.apply("delete"),
+    move: () => void this.app.editor.move(),
     undo: () => void this.app.editor.undo(),
     redo: () => void this.app.editor.redo(),
     obstacle: () => void this.app.addObstacle(),
@@ -87,6 +91,10 @@ export class Menu {
     acceptReferred: () => void this.app.align.acceptReferred(),
     dropReferred: () => this.app.align.dropReferred(),
     undoAlign: () => void this.app.align.undo(this.own.agent),
+    conflictsAgain: () => void this.app.showConflicts(),
+    conflictsHide: () => this.app.layers.hide("conflicts"),
+    conflictBefore: () => this.app.conflicts.step(-1),
+    conflictNext: () => this.app.conflicts.step(1),
     up: () => this.app.align.nudge([0, 0, kNudge], 0),
     down: () => this.app.align.nudge([0, 0, -kNudge], 0),
     left: () => this.app.align.nudge([0, 0, 0], 0.1),
@@ -95,16 +103,19 @@ export class Menu {
 
   private make(): PanelPage {
     if (this.typing) return keyboardPage(this.typing.hint, this.typing.text);
-    const { title, rows } = { main: this.main, edit: this.edit, robots: this.robots, align: this.aligning, things: this.things }[this.name].call(this);
+    const { title, rows } = { main: this.main, edit: this.edit, robots: this.robots, align: this.aligning, things: this.things, conflicts: this.conflicts }[this.name].call(this);
     return { title, words: this.words(), rows };
   }
 
   private words(): string {
-    const { editor, news } = this.app;
+    const { editor, news, world } = this.app;
     const item = news.latest.value;
     if (item) return item.text;
     if (editor.question.value) return editor.question.value.hint.replace("Click", "Point at");
     if (this.name !== "align" && editor.blocked.value !== null) return editor.blocked.value;
+    if (this.name === "conflicts" && this.app.conflicts.region) return conflictWords(this.app.conflicts.region);
+    const path = this.name === "robots" && [...world.paths.value.values()].at(-1);
+    if (path) return `${path.robot}: ${pathWords(path)}`;
     const selection = editor.selection.value;
     if (selection && !selection.closed) return kTools.find(({ tool }) => tool === selection.tool)!.hint.replace("Click", "Point at and press on");
     return "Point with your hand or controller; pinch or press the trigger.";
@@ -116,7 +127,7 @@ export class Menu {
       title: `Concord: ${where}`,
       rows: [
         [{ id: "page edit", title: "Edit" }, { id: "page robots", title: "Robots" }],
-        [{ id: "page align", title: "Align", main: this.own.standing.value.state === "unaligned" }, { id: "page things", title: "Things" }],
+        [{ id: "page align", title: "Align", main: this.own.standing.value.state === "unaligned" }, { id: "page things", title: "Things" }, { id: "page conflicts", title: "Conflicts" }],
         [{ id: "do sendMap", title: "Send Map" }, { id: "do getScene", title: "Get Scene" }, { id: "do sendScene", title: "Send Scene", disabled: !this.app.draft.open.value }],
         [{ id: "do scan", title: this.room.scanning.value ? "Scanning" : "Scan the room", pressed: this.room.scanning.value }, { id: "do leave", title: "Leave" }],
       ],
@@ -131,7 +142,7 @@ export class Menu {
       title: "Edit",
       rows: [
         kTools.map(({ tool, title }) => ({ id: `tool ${tool}`, title, pressed: tool === selected })),
-        [{ id: "do done", title: "Done" }, { id: "do back", title: "Back" }, { id: "do cancel", title: "Cancel" }],
+        [{ id: "do done", title: "Done" }, { id: "do back", title: "Back" }, { id: "do cancel", title: "Cancel" }, { id: "do move", title: "Move…", disabled: off }],
         [{ id: "do add", title: "Add", main: true, disabled: off }, { id: "do delete", title: "Delete", main: true, disabled: off }, { id: "do undo", title: "Undo", disabled: editor.undoable.value.length === 0 }, { id: "do redo", title: "Redo", disabled: editor.redoable.value.length === 0 }],
         [{ id: "do label", title: "Label…", disabled: off }, { id: "do touch", title: "Name a thing…", share: 1.4, disabled: off }, { id: "do zone", title: "Keep out…", disabled: off }, { id: "do obstacle", title: "Obstacle", disabled: off }],
         [kBack, { id: "do atHand", title: this.atHand.value ? "Points at my hand" : "Points where I aim", share: 2 }],
@@ -187,6 +198,26 @@ export class Menu {
     return { title: thing ? `${thing.class_name} ${thing.instance}` : "Things", rows: [...detected, ...assets, ...picked, [kBack, { id: "do pick", title: "Pick a thing…", share: 2 }]] };
   }
 
+  private conflicts(): Omit<PanelPage, "words"> {
+    const { found, region } = this.app.conflicts;
+    const now = found.value;
+    const off = !now || now.regions.length === 0;
+    const place = now && region ? `${now.at! + 1} of ${now.regions.length}, ${this.metresTo(region)} m away` : null;
+    const none = now && (off ? "All agents agree" : `${counted(now.voxels, "voxel")} in dispute`);
+    return {
+      title: place ?? none ?? "Where agents disagree",
+      rows: [
+        [{ id: "do conflictBefore", title: "‹ Before", disabled: off }, { id: "do conflictNext", title: "Next ›", main: true, disabled: off }],
+        [kBack, { id: "do conflictsAgain", title: "Ask again" }, { id: "do conflictsHide", title: "Hide" }],
+      ],
+    };
+  }
+
+  private metresTo(region: ConflictRegion): string {
+    const [low, high] = cornersOf(region, this.app.layers.resolution);
+    return distance(this.app.eyes.here(), scale(add(low, high), 0.5)).toFixed(1);
+  }
+
   private async pick(): Promise<void> {
     const p = await this.app.editor.askPoint("Click a labelled thing.");
     this.picked = p && this.app.thingAt(p);
@@ -205,6 +236,7 @@ export class Menu {
   private turnTo(name: PageName): void {
     this.name = name;
     if (name === "things") void this.loadAssets();
+    if (name === "conflicts") void this.app.showConflicts();
     this.page.set(this.make());
   }
 

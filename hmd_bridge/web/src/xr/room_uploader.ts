@@ -14,6 +14,7 @@ export class RoomUploader {
   readonly occupied = new Signal(0);
   readonly looks = new Signal(0);
   private sequence = 0;
+  private restarts = 0;
   private busy = false;
   private last = -Infinity;
 
@@ -22,7 +23,14 @@ export class RoomUploader {
     private readonly news: News,
     /** Called when what was sent before counts no more: all meshes are to be sent again. */
     private readonly anew: () => void,
-  ) {}
+    /** Called when the server takes nothing more in this frame: another is to begin. */
+    private readonly reframe: () => void,
+  ) {
+    // To a new session the server knows no look: what it is sent first must be the whole room, or it takes it that the rest is gone.
+    link.state.onChange((state) => {
+      if (state.state === "ready" && !state.hello.resumed) this.restart();
+    });
+  }
 
   /** Whether a look can be taken now. @param now milliseconds */
   due(now: number): boolean {
@@ -33,9 +41,11 @@ export class RoomUploader {
   async send(sensor: Pose, meshes: readonly RoomMesh[], now: number): Promise<void> {
     this.busy = true;
     this.last = now;
+    const { restarts } = this;
     try {
       for (const part of payloads(sensor, meshes)) {
         const packed = await packPayload(part.payload);
+        if (restarts !== this.restarts) return; // it was seen in another frame
         const sequence = this.sequence++;
         const { occupied } = await this.link.upload((id) => meshFrame(id, sequence, part.meshes, packed));
         this.occupied.set(occupied);
@@ -51,6 +61,7 @@ export class RoomUploader {
   /** The own frame is another. */
   restart(): void {
     this.sequence = 0;
+    ++this.restarts;
     this.occupied.set(0);
     this.anew();
   }
@@ -58,7 +69,8 @@ export class RoomUploader {
   private failed(error: unknown): void {
     const code = error instanceof RefusedError ? error.refusal.code : null;
     if (code === "DUP_SEQ") return; // it came before: the next number is a new one
-    this.anew();
+    if (code === "BAD_FRAME") this.reframe();
+    else this.anew();
     // While tracking is lost, or the connection, the person is told elsewhere.
     if (code !== null && code !== "TRACKING_LOST") this.news.failed((error as RefusedError).message);
   }
