@@ -92,12 +92,14 @@ void BridgeNode::on_path(const concord::Path& path) {
   for (auto& [number, session] : hub_.sessions()) {
     const auto followed = session.path_frames.find(path.robot);
     if (!session.connection || followed == session.path_frames.end()) continue;
-    const std::pair told{path.id, path.plan_number};
-    auto& last = session.told_paths[path.robot];
-    if (last == told) continue;  // it is said again each second
+    const auto where = desk_.place(session, followed->second);
+    if (!where) continue;
+    const Session::ToldPath told{path.id, path.plan_number, path.message, where->T_map_frame.matrix()};
+    const auto last = session.told_paths.find(path.robot);
+    if (last != session.told_paths.end() && last->second == told) continue;
     const auto shown = desk_.show(session, path, followed->second);
     if (!shown) continue;
-    last = told;
+    session.told_paths.insert_or_assign(path.robot, told);
     hub_.tell(session, "path/" + path.robot, event_text(PathEvent{path.robot, *shown}));
   }
 }

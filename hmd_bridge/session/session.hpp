@@ -81,7 +81,15 @@ struct Session {
   std::map<std::uint32_t, Told> told_complete;
   std::int64_t told_skipped = 0;
   std::map<std::string, Frame> path_frames;  ///< robots whose paths it follows, and the frame it wants them in
-  std::map<std::string, std::pair<std::string, std::int64_t>> told_paths;  ///< id and plan number, by robot
+  /// What it was told of a path last; it is said again each second.
+  struct ToldPath {
+    std::string id;
+    std::int64_t plan_number = 0;
+    std::string message;
+    Eigen::Matrix4d T_map_frame;  ///< that its points were in
+    bool operator==(const ToldPath&) const = default;
+  };
+  std::map<std::string, ToldPath> told_paths;  ///< by robot
 
   /// What it still has of stream 0 since before its connection was lost.
   struct Kept {

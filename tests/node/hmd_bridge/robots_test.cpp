@@ -54,6 +54,25 @@ TEST_F(Working, APathIsFollowedThroughItsChanges) {
   EXPECT_CODE(ana.ask(PathRequest{"robot1", Frame::kMap, false}), "OK");
 }
 
+TEST_F(Working, APathIsSaidAnewInOnesOwnFrameWhenThatLiesElsewhere) {
+  Client bert(lab);
+  become_agent(bert, "headset1", true);  // a metre off along x
+  EXPECT_CODE(bert.ask(PathRequest{"robot1", Frame::kOwn, true}), "OK");
+  EXPECT_CODE(bert.ask(GoalRequest{"robot1", Frame::kMap, Pose{{5, 1, 0}, {0, 0, 0, 1}}}), "OK");
+  lab.run(1.5);
+  bert.read();
+  const auto first_x = [&] { return bert.events.at("path")["path"]["points"][0]["p"][0].get<double>(); };
+  const double before = first_x();
+  EXPECT_CODE(ana.ask(PlaceRequest{"headset1", Pose{{1.5, 0, 0}, {0, 0, 0, 1}}}), "OK");
+  lab.run(2.5);
+  bert.read();
+  EXPECT_NEAR(first_x(), before - 0.5, 0.01);
+  bert.events.clear();
+  lab.run(3);
+  bert.read();
+  EXPECT_FALSE(bert.events.contains("path")) << "nothing is new";
+}
+
 TEST_F(Working, GoalsThatCannotBeReachedAreRefused) {
   EXPECT_CODE(ana.ask(GoalRequest{"robot1", Frame::kMap, Pose{{50, 1, 0}, {0, 0, 0, 1}}}), "UNREACHABLE");
   EXPECT_CODE(ana.ask(GoalRequest{"nobody", Frame::kMap, kHere}), "NO_ROBOT");
