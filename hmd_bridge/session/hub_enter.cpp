@@ -38,6 +38,8 @@ void Hub::greet(Connection connection, Link& link, const ClientRequest& request,
                        return other.connection && other.agent == *hello.agent && other.identity.name != identity.name;
                      });
   if (taken) return no(Code::kDenied, "somebody else is this agent now; choose another name for it");
+  const auto why = hello.agent ? handlers_.not_for_clients(*hello.agent) : std::nullopt;
+  if (why) return no(Code::kDenied, why->c_str());
   if (Session* old = resumable(hello, identity)) return begin(connection, link, *old, hello, request.id, true, now);
   ++last_session_;
   auto [it, fresh] = sessions_.try_emplace(last_session_, last_session_, gate_.new_secret(), identity, config_.limits);
@@ -100,7 +102,8 @@ void Hub::begin(Connection connection, Link& link, Session& session, const Hello
        static_cast<std::int64_t>(limits.burst_upload_bytes), 30.0}};
   session.outbox.lossless(share(answer_text(id, answer)));
   for (const auto& [key, text] : state_) session.outbox.newest(key, text);
-  audit(session, resumed ? "hello(resumed)" : "hello", id, "OK");
+  const std::string as = session.agent.empty() ? "" : " agent=" + session.agent;
+  audit(session, (resumed ? "hello(resumed)" : "hello") + as, id, "OK");
   ready(session);
   handlers_.on_begin(session, resumed);
 }

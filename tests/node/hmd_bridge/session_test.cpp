@@ -101,6 +101,28 @@ TEST_F(Bridge, AStrangerCannotTakeUpASession) {
   EXPECT_FALSE(eve.ask(hello)["answer"]["resumed"].get<bool>());
 }
 
+TEST_F(Bridge, NoClientCanPassForARobot) {
+  lab.site.agents["cart"].kind = "robot";
+  lab.site.agents["glasses"].kind = "headset";
+  EXPECT_CODE(Client(lab).hello("cart"), "DENIED") << "the site file has it as a robot";
+  EXPECT_CODE(Client(lab).hello("glasses"), "OK");
+  EXPECT_CODE(Client(lab).hello("robot2"), "OK") << "nobody has said anything of it";
+  lab.robot_maps();
+  EXPECT_CODE(Client(lab).hello("robot1", "odom"), "DENIED") << "its own process sends its map";
+  lab.bus->publish("in/walker/pose", encode(AgentPose{"walker", "odom", Transform::Identity(), lab.bus->now()}));
+  lab.run(0.1);
+  EXPECT_CODE(Client(lab).hello("walker", "odom"), "DENIED") << "its own process says where it is";
+}
+
+TEST_F(Bridge, AHeadsetThatComesBackIsItsAgentAgain) {
+  become_agent(ana, "quest", false);
+  EXPECT_CODE(ana.upload(FrameKind::kMesh, 1, 0, mesh_payload(floor_look())), "OK");
+  lab.run(3);
+  ana.lose();
+  Client back(lab);
+  EXPECT_CODE(back.hello("quest"), "OK") << "it is this bridge that speaks for it";
+}
+
 TEST_F(Bridge, ClockTellsWhenItArrived) {
   EXPECT_CODE(ana.hello(), "OK");
   const Json answer = ana.ask(ClockRequest{12.5})["answer"];
