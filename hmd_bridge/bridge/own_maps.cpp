@@ -115,8 +115,8 @@ Granted<OwnMaps::Own*> OwnMaps::open(const Session& session) {
   if (own->frame_id != session.frame_id) {
     own->mapper = RoomMapper(desk_.context.site.resolution);
     own->frame_id = session.frame_id;
-    own->sender.begin(own->frame_id);
     own->dirty = false;
+    if (own->begun) own->sender.begin(own->frame_id);
   }
   return own;
 }
@@ -144,9 +144,14 @@ void OwnMaps::upload(const Ask& ask, const BinaryFrame& frame) {
 }
 
 void OwnMaps::publish(Own& own) {
+  own.dirty = false;
+  if (!own.begun) {
+    if (own.mapper.map().brick_count() == 0) return;
+    own.sender.begin(own.frame_id);
+    own.begun = true;
+  }
   for (const BrickIndex index : own.mapper.take_changed()) own.sender.touch(index);
   own.sender.send_now();
-  own.dirty = false;
 }
 
 void OwnMaps::send_map(const Ask& ask, const SendMapRequest& request) {

@@ -37,6 +37,7 @@ class OwnMaps {
     std::string over;      ///< a frame of it that was reset
     std::int64_t pose_sent = 0, used = 0;
     bool dirty = false;
+    bool begun = false;  ///< its sender has said something: until then nothing is void that others have of the agent
   };
 
   void hear_others();
