@@ -54,6 +54,20 @@ TEST_F(Working, APathIsFollowedThroughItsChanges) {
   EXPECT_CODE(ana.ask(PathRequest{"robot1", Frame::kMap, false}), "OK");
 }
 
+TEST_F(Working, APathInAnOwnFrameIsSaidAgainWhenThatFrameIsPlacedAnew) {
+  Client bert(lab);
+  become_agent(bert, "quest", true);
+  EXPECT_CODE(bert.ask(PathRequest{"robot1", Frame::kOwn, true}), "OK");
+  EXPECT_CODE(ana.ask(GoalRequest{"robot1", Frame::kMap, Pose{{5, 1, 0}, {0, 0, 0, 1}}}), "OK");
+  lab.run(1.5);
+  bert.read();
+  EXPECT_NEAR(bert.events["path"]["path"]["points"].back()["p"][0].get<double>(), 4, 1e-6) << bert.events["path"];
+  EXPECT_CODE(ana.ask(PlaceRequest{"quest", Pose{{2, 0, 0}, {0, 0, 0, 1}}}), "OK");
+  lab.run(2.5);
+  bert.read();
+  EXPECT_NEAR(bert.events["path"]["path"]["points"].back()["p"][0].get<double>(), 3, 1e-6);
+}
+
 TEST_F(Working, GoalsThatCannotBeReachedAreRefused) {
   EXPECT_CODE(ana.ask(GoalRequest{"robot1", Frame::kMap, Pose{{50, 1, 0}, {0, 0, 0, 1}}}), "UNREACHABLE");
   EXPECT_CODE(ana.ask(GoalRequest{"nobody", Frame::kMap, kHere}), "NO_ROBOT");
@@ -79,6 +93,23 @@ TEST_F(Working, AVirtualObstacleForcesAnotherPath) {
   EXPECT_CODE(ana.ask(ObstacleRemoveRequest{obstacle}), "OK");
   EXPECT_CODE(ana.ask(ObstacleRemoveRequest{obstacle}), "CONFLICT");
   EXPECT_CODE(ana.ask(ObstacleRemoveRequest{"none"}), "NOT_FOUND");
+}
+
+/// A planner that is too busy to look at the map says the old path again and again.
+TEST_F(Working, AnObstacleOfWhichNoPlannerSaysWhatItDoesIsTakenBack) {
+  concord::Path path;
+  path.id = "old";
+  path.robot = "robot1";
+  path.active = true;
+  path.status = "OK";
+  const auto alive = std::make_shared<bool>(true);
+  lab.bus->every(
+      500'000, [&] { lab.bus->publish("out/path/robot1", encode(path)); }, alive);
+  lab.run(1);
+  EXPECT_CODE(ana.ask(ObstacleAddRequest{Frame::kMap, Box{{3, 0, 0.1}, {3.2, 3, 0.8}}, {}}), "TIMEOUT");
+  lab.run(1);
+  const Json map = ana.ask(SceneGetRequest{Frame::kMap, {3.1, 1.5, 0.5}, 0.3});
+  EXPECT_TRUE(code_of_answer(map) == "OK" && map["answer"]["voxels"]["boxes"].empty()) << map;
 }
 
 }  // namespace
