@@ -93,7 +93,9 @@ void BridgeNode::on_path(const concord::Path& path) {
   for (auto& [number, session] : hub_.sessions()) {
     const auto followed = session.path_frames.find(path.robot);
     if (!session.connection || followed == session.path_frames.end()) continue;
-    const std::pair told{path.id, path.plan_number};
+    const auto where = desk_.place(session, followed->second);
+    if (!where) continue;
+    const Session::ToldPath told{path.id, path.plan_number, where->T_map_frame.matrix()};
     auto& last = session.told_paths[path.robot];
     if (last == told) continue;  // it is said again each second
     const auto shown = desk_.show(session, path, followed->second);
