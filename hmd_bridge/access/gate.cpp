@@ -1,6 +1,9 @@
 #include "access/gate.hpp"
 
+#include <arpa/inet.h>
+
 #include <algorithm>
+#include <array>
 #include <cctype>
 
 namespace concord::hmd {
@@ -18,6 +21,13 @@ std::string lower(std::string text) {
 
 bool is_loopback(const std::string& address) {
   return address == "::1" || address.starts_with("127.") || address.starts_with("::ffff:127.");
+}
+
+std::string network_of(const std::string& address) {
+  std::array<char, 16> bytes{};
+  const bool mapped = address.starts_with("::ffff:");
+  if (mapped || inet_pton(AF_INET6, address.c_str(), bytes.data()) != 1) return address;
+  return {bytes.data(), 8};
 }
 
 bool is_local_host(const std::string& host) {

@@ -29,6 +29,9 @@ struct Identity {
 /// machine (DNS rebinding) comes from loopback too, but its browser says its own name here.
 [[nodiscard]] bool is_local_host(const std::string& host);
 
+/// Whoever has an address is likely to have all of this: the address, or the first 64 bits of an IPv6 one.
+[[nodiscard]] std::string network_of(const std::string& address);
+
 /// What a browser says of where a page came from: allowed are none (no browser), the server itself as `scheme` and the
 /// Host header name it, and those that the site file lists, each as "https://name" or "https://name:port". Without
 /// case.

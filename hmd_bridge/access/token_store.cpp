@@ -2,9 +2,11 @@
 
 #include <openssl/evp.h>
 #include <openssl/rand.h>
+#include <sqlite3.h>
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <stdexcept>
 
 #include "core/requests.hpp"
@@ -17,6 +19,13 @@ constexpr const char* kMigrations[] = {
     "CREATE TABLE tokens (name TEXT PRIMARY KEY, hash TEXT NOT NULL UNIQUE, role INTEGER NOT NULL, created INTEGER NOT "
     "NULL)"};
 constexpr std::size_t kMaxToken = 200;
+
+struct Close {
+  void operator()(sqlite3* handle) const { sqlite3_close(handle); }
+};
+struct Finalize {
+  void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+};
 
 std::string sha256(const std::string& text) {
   std::array<unsigned char, 32> hash;
@@ -104,17 +113,30 @@ Result<std::vector<TokenStore::Entry>> TokenStore::list() {
   });
 }
 
+// Anybody may ask whether a token is one: this writes nothing and waits for nobody.
 Result<std::optional<Identity>> TokenStore::find(const std::string& token) {
-  if (token.size() > kMaxToken) return std::optional<Identity>();
-  return with(file_, [&](Database& database) -> Result<std::optional<Identity>> {
-    Statement find = database.prepare("SELECT name, role FROM tokens WHERE hash = ?");
-    const auto row = find.bind(sha256(token)).step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return std::optional<Identity>();
-    const std::int64_t role = find.integer(1);
-    if (role < 0 || role > 2) return concord::refuse(concord::Code::kMalformed, "a token in the store has no role");
-    return std::optional(Identity{find.text(0), static_cast<Role>(role)});
-  });
+  std::error_code ignored;
+  if (token.size() > kMaxToken || !std::filesystem::exists(file_, ignored)) return std::optional<Identity>();
+  sqlite3* opened = nullptr;
+  int status = sqlite3_open_v2(file_.c_str(), &opened, SQLITE_OPEN_READWRITE, nullptr);
+  const std::unique_ptr<sqlite3, Close> handle(opened);
+  sqlite3_stmt* prepared = nullptr;
+  if (status == SQLITE_OK)
+    status = sqlite3_prepare_v2(handle.get(), "SELECT name, role FROM tokens WHERE hash = ?", -1, &prepared, nullptr);
+  const std::unique_ptr<sqlite3_stmt, Finalize> find(prepared);
+  const std::string hash = sha256(token);
+  if (status == SQLITE_OK)
+    status = sqlite3_bind_text(find.get(), 1, hash.data(), static_cast<int>(hash.size()), SQLITE_TRANSIENT);
+  if (status == SQLITE_OK) status = sqlite3_step(find.get());
+  if (status == SQLITE_DONE) return std::optional<Identity>();
+  if (status != SQLITE_ROW) {
+    const bool busy = (status & 0xFF) == SQLITE_BUSY;
+    return concord::refuse(busy ? concord::Code::kBusy : concord::Code::kIo, sqlite3_errstr(status));
+  }
+  const std::int64_t role = sqlite3_column_int64(find.get(), 1);
+  if (role < 0 || role > 2) return concord::refuse(concord::Code::kMalformed, "a token in the store has no role");
+  const auto* name = reinterpret_cast<const char*>(sqlite3_column_text(find.get(), 0));
+  return std::optional(Identity{name != nullptr ? name : "", static_cast<Role>(role)});
 }
 
 }  // namespace concord::hmd

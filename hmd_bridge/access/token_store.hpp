@@ -34,7 +34,7 @@ class TokenStore {
   [[nodiscard]] Result<void> remove(const std::string& name);
   /// By name.
   [[nodiscard]] Result<std::vector<Entry>> list();
-  /// Whose token it is; nobody's if it is none.
+  /// Whose token it is; nobody's if it is none. Refused at once (kBusy) while somebody writes them.
   [[nodiscard]] Result<std::optional<Identity>> find(const std::string& token);
 
  private:

@@ -9,6 +9,8 @@ namespace {
 
 constexpr std::int64_t kPublish = 500'000;  // microseconds
 constexpr std::int64_t kPoses = 100'000;
+constexpr std::int64_t kSilent = 5'000'000;  ///< after so long nobody else speaks for an agent any more
+constexpr std::size_t kMostOthers = 1000;
 
 Code upload_code(const Error& error) {
   if (error.code == concord::Code::kStale) return Code::kDupSeq;
@@ -20,11 +22,12 @@ Code upload_code(const Error& error) {
 
 OwnMaps::Own::Own(const NodeContext& context, const std::string& agent)
     : mapper(context.site.resolution),
+      boot_id(context.bus.now()),
       sender(context.bus, context.counters,
              {.stream = "in/" + agent,
               .resolution = context.site.resolution,
               .bytes_per_second = context.site.stream.bytes_per_second,
-              .boot_id = context.bus.now()},
+              .boot_id = boot_id},
              mapper.map()) {}
 
 OwnMaps::OwnMaps(Desk& desk) : desk_(desk) {
@@ -34,11 +37,46 @@ OwnMaps::OwnMaps(Desk& desk) : desk_(desk) {
                       const auto it = by_agent_.find(channel.substr(std::string("out/frame_over/").size()));
                       if (it != by_agent_.end()) it->second->over = over.frame_id;
                     });
+  hear_others();
   context.bus.every(kPublish, [this] {
     for (auto& [agent, own] : by_agent_) {
       if (own->dirty) publish(*own);
     }
   });
+}
+
+/// Our own messages come back to us, too: a stream of ours is known by its boot_id, and poses of an agent that we speak
+/// for are taken for ours.
+void OwnMaps::hear_others() {
+  const NodeContext& context = desk_.context;
+  listen<BrickDigest>(context.bus, context.counters, context.process, "in/.*/digest",
+                      [this](const std::string& channel, const BrickDigest& digest) {
+                        const std::string agent = channel.substr(3, channel.rfind('/') - 3);
+                        const auto own = by_agent_.find(agent);
+                        if (own == by_agent_.end() || own->second->boot_id != digest.boot_id) heard_other(agent);
+                      });
+  listen<AgentPose>(context.bus, context.counters, context.process, "in/.*/pose",
+                    [this](const std::string& channel, const AgentPose&) {
+                      const std::string agent = channel.substr(3, channel.rfind('/') - 3);
+                      if (!by_agent_.contains(agent)) heard_other(agent);
+                    });
+}
+
+void OwnMaps::heard_other(const std::string& agent) {
+  const std::int64_t now = desk_.now();
+  if (others_.size() >= kMostOthers) std::erase_if(others_, [now](const auto& e) { return now - e.second > kSilent; });
+  if (others_.size() < kMostOthers || others_.contains(agent)) others_[agent] = now;
+}
+
+std::optional<std::string> OwnMaps::not_for_clients(const std::string& agent) const {
+  const Site& site = desk_.context.site;
+  const std::string& kind = site.agent(agent).kind;
+  const bool unknown = !site.agents.contains(agent) && kind == AgentConfig().kind;
+  if (kind != "headset" && !unknown) return "the site file has this agent as " + kind + "; choose another name";
+  const auto other = others_.find(agent);
+  if (other != others_.end() && desk_.now() - other->second < kSilent)
+    return "another process speaks for this agent; choose another name";
+  return std::nullopt;
 }
 
 OwnMaps::Own* OwnMaps::own_of(const std::string& agent) {
@@ -77,8 +115,8 @@ Granted<OwnMaps::Own*> OwnMaps::open(const Session& session) {
   if (own->frame_id != session.frame_id) {
     own->mapper = RoomMapper(desk_.context.site.resolution);
     own->frame_id = session.frame_id;
-    own->sender.begin(own->frame_id);
     own->dirty = false;
+    if (own->begun) own->sender.begin(own->frame_id);
   }
   return own;
 }
@@ -106,9 +144,14 @@ void OwnMaps::upload(const Ask& ask, const BinaryFrame& frame) {
 }
 
 void OwnMaps::publish(Own& own) {
+  own.dirty = false;
+  if (!own.begun) {
+    if (own.mapper.map().brick_count() == 0) return;
+    own.sender.begin(own.frame_id);
+    own.begun = true;
+  }
   for (const BrickIndex index : own.mapper.take_changed()) own.sender.touch(index);
   own.sender.send_now();
-  own.dirty = false;
 }
 
 void OwnMaps::send_map(const Ask& ask, const SendMapRequest& request) {

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "bridge/desk.hpp"
@@ -19,6 +20,8 @@ class OwnMaps {
   OwnMaps(const OwnMaps&) = delete;
   OwnMaps& operator=(const OwnMaps&) = delete;
 
+  /// Why no client may be this agent: it is a robot, or another process speaks for it.
+  [[nodiscard]] std::optional<std::string> not_for_clients(const std::string& agent) const;
   void begin(const Session& session, bool resumed);
   void tracking(const Session& session);
   void upload(const Ask& ask, const BinaryFrame& frame);
@@ -28,13 +31,17 @@ class OwnMaps {
   struct Own {
     Own(const NodeContext& context, const std::string& agent);
     RoomMapper mapper;
+    std::int64_t boot_id;  ///< of its sender
     BrickSender sender;
     std::string frame_id;  ///< empty: not begun
     std::string over;      ///< a frame of it that was reset
     std::int64_t pose_sent = 0, used = 0;
     bool dirty = false;
+    bool begun = false;  ///< its sender has said something: until then nothing is void that others have of the agent
   };
 
+  void hear_others();
+  void heard_other(const std::string& agent);
   [[nodiscard]] Own* own_of(const std::string& agent);
   /// The map that a client scans into now, or why it may not.
   [[nodiscard]] Granted<Own*> open(const Session& session);
@@ -42,6 +49,7 @@ class OwnMaps {
 
   Desk& desk_;
   std::map<std::string, std::unique_ptr<Own>> by_agent_;
+  std::map<std::string, std::int64_t> others_;  ///< agents that other processes speak for, and when they did last
 };
 
 }  // namespace concord::hmd

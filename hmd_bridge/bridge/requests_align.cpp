@@ -153,6 +153,8 @@ void work_on(Desk& desk, const Ask& ask, const AlignAcceptRequest& request) {
   const Transform T_map_agent = T_map_target * result.evidence.T_target_source;
   const std::string agent = result.source.agent, frame_id = result.source.frame_id;
   const AgentState* state = desk.world.agent(agent);
+  if (state == nullptr || state->frame_id != frame_id || state->known == 0)
+    return desk.hub.refuse(ask, Code::kBadFrame, "the map of " + agent + " that was aligned is gone; ask again");
   const auto before = state != nullptr && state->aligned ? std::optional(state->T_map_agent) : std::nullopt;
   const AlignDecision decision{desk.id(ask), desk.author(ask), AlignDecision::Op::kAccept, request.align, desk.now()};
   desk.forward(

@@ -62,16 +62,20 @@ Granted<std::optional<std::string>> who_stands_in(Desk& desk, const concord::Vol
   return std::optional<std::string>();
 }
 
-/// Waits until every path that was active has been looked at on a map of at least `revision`.
+/// Waits until the map has changed, and every path that was active has been looked at on a map of at least that
+/// revision.
 struct ReplanWait {
   std::map<std::string, std::int64_t> before;  ///< plan numbers, by robot
   std::map<std::string, std::string> status;   ///< then
-  std::int64_t revision = 0, until = 0;
-  std::function<void(const std::vector<PathConsequence>&)> done;
+  std::int64_t asked_at = 0;                   ///< the map's revision before
+  std::optional<std::int64_t> revision;        ///< with the change; nothing: it has not come yet
+  std::int64_t until = 0;
+  std::function<void(const std::vector<PathConsequence>&, bool in_time)> done;
 };
 
-void await_replan(Desk& desk, std::shared_ptr<ReplanWait> wait) {
-  wait->revision = desk.world.map().revision();
+/// @param changes how many voxels; without any the map stays as it is.
+void await_replan(Desk& desk, std::shared_ptr<ReplanWait> wait, std::int64_t changes) {
+  if (changes == 0) wait->revision = desk.world.map().revision();
   wait->until = desk.now() + kReplanPatience;
   const auto alive = std::make_shared<bool>(true);
   auto owner = std::make_shared<std::shared_ptr<bool>>(alive);
@@ -79,7 +83,9 @@ void await_replan(Desk& desk, std::shared_ptr<ReplanWait> wait) {
       kLook,
       [&desk, wait, owner] {
         std::vector<PathConsequence> found;
-        bool all = desk.now() >= wait->until;
+        const bool late = desk.now() >= wait->until;
+        const std::int64_t now = desk.world.map().revision();
+        if (!wait->revision && now > wait->asked_at) wait->revision = now;
         std::size_t seen = 0;
         for (const auto& [robot, number] : wait->before) {
           const concord::Path* path = desk.world.active_path(robot);
@@ -87,18 +93,20 @@ void await_replan(Desk& desk, std::shared_ptr<ReplanWait> wait) {
             ++seen;  // it ended meanwhile
             continue;
           }
-          if (path->map_revision >= wait->revision) ++seen;
+          if (wait->revision && path->map_revision >= *wait->revision) ++seen;
           found.push_back({robot, path->status.substr(0, 40), path->plan_number != number, path->plan_number});
         }
-        if (!all && seen < wait->before.size()) return;
+        const bool all = seen == wait->before.size();
+        if (!late && !all) return;
         owner->reset();  // this timer goes
-        wait->done(found);
+        wait->done(found, all);
       },
       alive);
 }
 
-std::shared_ptr<ReplanWait> paths_now(const Desk& desk) {
+std::shared_ptr<ReplanWait> paths_now(Desk& desk) {
   auto wait = std::make_shared<ReplanWait>();
+  wait->asked_at = desk.world.map().revision();
   for (const concord::Path* path : desk.world.active_paths()) {
     if (wait->before.size() >= 100) break;
     wait->before[path->robot] = path->plan_number;
@@ -107,10 +115,10 @@ std::shared_ptr<ReplanWait> paths_now(const Desk& desk) {
   return wait;
 }
 
-void take_back(Desk& desk, const Ask& ask, const std::string& edit, const std::string& why) {
+void take_back(Desk& desk, const Ask& ask, const std::string& edit, Code code, const std::string& why) {
   const concord::UndoRequest undo{edit + "-back", desk.author(ask), edit, false, desk.now()};
-  desk.asker.ask({"in/undo", encode(undo), undo.id, {}, {}}, [&desk, ask, why](const Answer& answer) {
-    desk.hub.refuse(ask, Code::kNoPath,
+  desk.asker.ask({"in/undo", encode(undo), undo.id, {}, {}}, [&desk, ask, code, why](const Answer& answer) {
+    desk.hub.refuse(ask, code,
                     why + (answer.ok ? "; it was taken back" : "; and it could not be taken back: " + answer.message));
   });
 }
@@ -177,15 +185,19 @@ void work_on(Desk& desk, const Ask& ask, const ObstacleAddRequest& request) {
   auto wait = paths_now(desk);
   desk.asker.ask({"in/edit", encode(edit), edit.id, {}, {}}, [&desk, ask, wait, id = edit.id](const Answer& answer) {
     if (!answer.ok) return desk.hub.refuse(ask, code_of(answer.code), answer.message);
-    wait->done = [&desk, ask, before = wait->status, id, answer](const std::vector<PathConsequence>& paths) {
+    wait->done = [&desk, ask, before = wait->status, id, answer](const std::vector<PathConsequence>& paths,
+                                                                 bool in_time) {
       if (desk.hub.find(ask.session) == nullptr) return;
       for (const PathConsequence& path : paths) {
         if (before.at(path.robot) != "OK" || path.status == "OK") continue;
-        return take_back(desk, ask, id, "it leaves " + path.robot + " without a path (" + path.status + ")");
+        return take_back(desk, ask, id, Code::kNoPath,
+                         "it leaves " + path.robot + " without a path (" + path.status + ")");
       }
+      if (!in_time)
+        return take_back(desk, ask, id, Code::kTimeout, "whether robots have a way around it was not said in 5 s");
       desk.hub.answer(ask, ObstacleAddAnswer{id, answer.revision, answer.count, paths});
     };
-    await_replan(desk, wait);
+    await_replan(desk, wait, answer.count);
   });
 }
 
@@ -195,10 +207,10 @@ void work_on(Desk& desk, const Ask& ask, const ObstacleRemoveRequest& request) {
   auto wait = paths_now(desk);
   desk.asker.ask({"in/undo", encode(undo), undo.id, {}, {}}, [&desk, ask, wait](const Answer& answer) {
     if (!answer.ok) return desk.hub.refuse(ask, code_of(answer.code), answer.message);
-    wait->done = [&desk, ask, answer](const std::vector<PathConsequence>& paths) {
+    wait->done = [&desk, ask, answer](const std::vector<PathConsequence>& paths, bool) {
       desk.hub.answer(ask, ObstacleRemoveAnswer{answer.revision, paths});
     };
-    await_replan(desk, wait);
+    await_replan(desk, wait, answer.count);
   });
 }
 

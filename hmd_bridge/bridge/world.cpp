@@ -20,6 +20,13 @@ VoxelMask free_cells(const Brick& brick) {
   return mask;
 }
 
+/// Sessions without a connection look at nothing: when they come back their views begin anew.
+bool is_looked_at(Hub& hub, std::uint32_t stream) {
+  return std::any_of(hub.sessions().begin(), hub.sessions().end(), [stream](const auto& entry) {
+    return entry.second.connection && entry.second.views.contains(stream);
+  });
+}
+
 }  // namespace
 
 World::World(const NodeContext& context, Hub& hub)
@@ -147,7 +154,14 @@ bool World::alive(const std::string& process) const {
 
 LayerCopy* World::agent_layer(const std::string& id) {
   if (const auto it = agent_layers_.find(id); it != agent_layers_.end()) return it->second.get();
-  if (agent(id) == nullptr || agent_layers_.size() >= kMaxAgentLayers) return nullptr;
+  if (agent(id) == nullptr) return nullptr;
+  if (agent_layers_.size() >= kMaxAgentLayers) {
+    const auto unseen = std::find_if(agent_layers_.begin(), agent_layers_.end(),
+                                     [this](const auto& entry) { return !is_looked_at(hub_, entry.second->number()); });
+    if (unseen == agent_layers_.end()) return nullptr;
+    hub_.layers().close(unseen->second->number());
+    agent_layers_.erase(unseen);
+  }
   auto layer = std::make_unique<LayerCopy>(
       context_, hub_,
       LayerCopy::Config{

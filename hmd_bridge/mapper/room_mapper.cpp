@@ -64,7 +64,7 @@ Result<void> RoomMapper::take(const MeshLook& look, std::int64_t sequence) {
   std::map<std::uint32_t, std::vector<VoxelIndex>> fresh;
   std::size_t in_all = met_cells_, looked = 0, meshes = meshes_.size();
   for (const MeshPart& part : look.parts) {
-    auto cells = cells_of(part, kMaxCells - std::min(looked, kMaxCells));
+    auto cells = cells_of(part, kMaxLookCells - std::min(looked, kMaxLookCells));
     if (!cells) return tl::unexpected(std::move(cells.error()));
     looked += cells->size();
     in_all += cells->size();

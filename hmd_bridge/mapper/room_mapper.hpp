@@ -21,8 +21,9 @@ class RoomMapper {
  public:
   static constexpr int kBegin = 50, kHit = 5, kMiss = 1, kExists = 60, kFull = 100;  ///< percent
   static constexpr double kReach = 5.0;                                              ///< metres
-  static constexpr std::size_t kMaxCells = 4'000'000;  ///< that all meshes meet, and that one look may look at
-  static constexpr std::size_t kMaxRays = 20'000;      ///< of one look; of more met cells each n-th, in turns
+  static constexpr std::size_t kMaxCells = 4'000'000;                                ///< that all meshes meet
+  static constexpr std::size_t kMaxLookCells = 500'000;  ///< that the meshes of one look may look at
+  static constexpr std::size_t kMaxRays = 2'000;         ///< of one look; of more met cells each n-th, in turns
   static constexpr std::size_t kMaxBricks = 200'000;
   static constexpr std::size_t kMaxMeshes = 4096;
 

@@ -13,11 +13,17 @@ using boost::asio::ip::tcp;
 using Plain = beast::tcp_stream;
 using Secure = beast::ssl_stream<beast::tcp_stream>;
 using Request = http::request<http::string_body>;
-using Response = http::response<http::string_body>;
+using Response = http::response<http::span_body<const char>>;
+
+/// The body is not copied: what holds it goes with the answer.
+struct Reply {
+  Response response;
+  std::shared_ptr<const std::string> body;
+};
 
 constexpr std::uint32_t kMaxHeader = 8192, kMaxBody = 4096;
 
-Response respond(const Request& request, http::status status, const char* type, std::string body) {
+Reply respond(const Request& request, http::status status, const char* type, std::shared_ptr<const std::string> body) {
   Response response(status, request.version());
   response.set(http::field::content_type, type);
   response.set(http::field::cache_control, "no-cache");
@@ -29,16 +35,16 @@ Response respond(const Request& request, http::status status, const char* type, 
       "default-src 'self'; img-src 'self' data: blob:; worker-src 'self' blob:; style-src 'self' 'unsafe-inline'; "
       "connect-src 'self' ws: wss:; frame-ancestors 'none'");
   response.keep_alive(request.keep_alive());
-  response.body() = std::move(body);
+  response.body() = {body->data(), body->size()};
   response.prepare_payload();
-  return response;
+  return {std::move(response), std::move(body)};
 }
 
-Response respond_json(const Request& request, http::status status, const nlohmann::json& body) {
-  return respond(request, status, "application/json", body.dump());
+Reply respond_json(const Request& request, http::status status, const nlohmann::json& body) {
+  return respond(request, status, "application/json", std::make_shared<const std::string>(body.dump()));
 }
 
-Response error(const Request& request, http::status status, const char* what) {
+Reply error(const Request& request, http::status status, const char* what) {
   return respond_json(request, status, {{"error", what}});
 }
 
@@ -47,7 +53,7 @@ std::string field(const Request& request, http::field name) {
   return {value.data(), value.size()};
 }
 
-Response ticket(Server::Core& core, const Request& request, const Peer& peer) {
+Reply ticket(Server::Core& core, const Request& request, const Peer& peer) {
   if (!core.gate.may_try(peer.address, core.now()))
     return error(request, http::status::too_many_requests, "too many tries; wait a moment");
   constexpr std::string_view kBearer = "Bearer ";
@@ -62,7 +68,7 @@ Response ticket(Server::Core& core, const Request& request, const Peer& peer) {
   return respond_json(request, http::status::ok, {{"ticket", *issued}, {"seconds", Gate::kTicketLife / 1'000'000}});
 }
 
-Response answer(Server::Core& core, const Request& request, const Peer& peer) {
+Reply answer(Server::Core& core, const Request& request, const Peer& peer) {
   const std::string target(request.target().data(), request.target().size());
   const std::string scheme = core.config.tls ? "https" : "http";
   if (!origin_allowed(field(request, http::field::origin), scheme, field(request, http::field::host),
@@ -81,7 +87,7 @@ Response answer(Server::Core& core, const Request& request, const Peer& peer) {
   const auto file = core.files.find(target);
   if (file == nullptr) return error(request, http::status::not_found, "there is nothing by this name");
   return respond(request, http::status::ok, file->type.c_str(),
-                 request.method() == http::verb::head ? std::string() : *file->body);
+                 request.method() == http::verb::head ? std::make_shared<const std::string>() : file->body);
 }
 
 /// Whether a header with a list of names has this one.
@@ -93,7 +99,7 @@ bool lists(const std::string& header, std::string_view name) {
 }
 
 /// Why a WebSocket is refused; nothing: it is not.
-std::optional<Response> refusal(Server::Core& core, const Request& request, const Peer& peer) {
+std::optional<Reply> refusal(Server::Core& core, const Request& request, const Peer& peer) {
   if (request.target() != "/ws") return error(request, http::status::not_found, "the WebSocket is at /ws");
   if (!lists(field(request, http::field::sec_websocket_protocol), kProtocol)) {
     return error(request, http::status::bad_request, "Sec-WebSocket-Protocol must offer hmd.v1");
@@ -143,19 +149,42 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
   void handle() {
     Request request = parser_->release();
     Peer peer{address_, false};
-    peer.local = is_loopback(address_) && is_local_host(field(request, http::field::host));
-    if (!websocket::is_upgrade(request)) return write(answer(*core_, request, peer));
-    if (auto refused = refusal(*core_, request, peer)) return write(std::move(*refused));
+    // A page of another server is not local, even if the site file lets it in: it asks for a ticket.
+    const std::string host = field(request, http::field::host);
+    peer.local = is_loopback(address_) && is_local_host(host) &&
+                 origin_allowed(field(request, http::field::origin), core_->config.tls ? "https" : "http", host, {});
+    if (!websocket::is_upgrade(request)) return write(noted(answer(*core_, request, peer), request));
+    if (auto refused = refusal(*core_, request, peer)) return write(noted(std::move(*refused), request));
     if (buffer_.size() > 0) return;  // frames before the handshake: no client of ours
     beast::get_lowest_layer(stream_).expires_never();
     std::make_shared<WebSocket<Stream>>(core_, std::move(stream_), std::move(place_))->start(request, peer);
   }
 
-  void write(Response response) {
-    response_ = std::move(response);
+  /// Who is refused for what they are is a line of the audit; what is not there is nobody's business.
+  Reply noted(Reply reply, const Request& request) {
+    using S = http::status;
+    const S status = reply.response.result();
+    if (status == S::unauthorized || status == S::forbidden || status == S::too_many_requests) {
+      const char* what = request.target() == "/api/ticket" ? "ticket"
+                         : request.target() == "/ws"       ? "connection"
+                                                           : "page";
+      core_->hub.note_refused(address_, what, std::to_string(reply.response.result_int()));
+    }
+    return reply;
+  }
+
+  void write(Reply reply) {
+    reply_ = std::move(reply);
+    serializer_.emplace(reply_.response);
+    write_some();
+  }
+
+  /// Who takes some of a large body in time has as much time for the next.
+  void write_some() {
     expire();
-    http::async_write(stream_, response_, [self = this->shared_from_this()](beast::error_code e, std::size_t) {
-      if (!e && self->response_.keep_alive()) return self->read();
+    http::async_write_some(stream_, *serializer_, [self = this->shared_from_this()](beast::error_code e, std::size_t) {
+      if (!e && !self->serializer_->is_done()) return self->write_some();
+      if (!e && self->reply_.response.keep_alive()) return self->read();
       self->end();
     });
   }
@@ -176,7 +205,8 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
   std::shared_ptr<void> place_;
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::string_body>> parser_;
-  Response response_;
+  Reply reply_;
+  std::optional<http::response_serializer<http::span_body<const char>>> serializer_;
 };
 
 }  // namespace

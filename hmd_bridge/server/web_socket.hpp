@@ -44,7 +44,10 @@ class WebSocket final : public Socket, public std::enable_shared_from_this<WebSo
     ws_.async_accept(request, [self = this->shared_from_this(), peer](beast::error_code error) {
       if (error) return;
       const auto opened = self->core_->hub.open(peer, self->core_->now());
-      if (!opened) return self->shut(1013, opened.error().message);
+      if (!opened) {
+        self->core_->hub.note_refused(peer.address, "connection", "BUSY");
+        return self->shut(1013, opened.error().message);
+      }
       self->connection_ = *opened;
       self->core_->open(*opened, self);
       self->read();

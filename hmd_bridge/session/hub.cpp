@@ -12,6 +12,13 @@ SharedText share(std::string text) { return std::make_shared<const std::string>(
 
 Refusal refusal(Code code, const std::string& message) { return {code, message.substr(0, 400), may_retry(code)}; }
 
+/// What a request takes of those that a client may make: these walk over much of the map.
+double cost_of(const RequestBody& body) {
+  const bool walks = std::holds_alternative<GridRequest>(body) || std::holds_alternative<SceneGetRequest>(body) ||
+                     std::holds_alternative<SaveRequest>(body);
+  return walks ? 10 : 1;
+}
+
 /// The name and the role of a request that is a binary frame.
 const RequestInfo* upload_info(FrameKind kind) {
   const char* name = kind == FrameKind::kMesh     ? UploadMeshAnswer::kName
@@ -32,7 +39,8 @@ Result<Hub::Connection> Hub::open(const Peer& peer, std::int64_t now) {
   now_ = now;
   const auto same = static_cast<std::size_t>(std::count_if(
       links_.begin(), links_.end(), [&](const auto& entry) { return entry.second.peer.address == peer.address; }));
-  if (links_.size() >= config_.max_clients) return refuse_busy("there are as many clients as may be");
+  if (greeted() >= config_.max_clients) return refuse_busy("there are as many clients as may be");
+  if (!peer.local && too_many_wait(peer)) return refuse_busy("too many connections have not said hello yet");
   if (!peer.local && same >= config_.max_clients_per_address)
     return refuse_busy("there are as many clients from this address as may be");
   const SessionLimits& limits = config_.limits;
@@ -49,6 +57,22 @@ Result<Hub::Connection> Hub::open(const Peer& peer, std::int64_t now) {
   return last_connection_;
 }
 
+std::size_t Hub::greeted() const {
+  return static_cast<std::size_t>(
+      std::count_if(links_.begin(), links_.end(), [](const auto& entry) { return entry.second.session.has_value(); }));
+}
+
+bool Hub::too_many_wait(const Peer& peer) const {
+  const std::string network = network_of(peer.address);
+  std::size_t all = 0, same = 0;
+  for (const auto& [connection, link] : links_) {
+    if (link.session || link.peer.local) continue;
+    ++all;
+    if (network_of(link.peer.address) == network) ++same;
+  }
+  return all >= kMaxUngreeted || same >= kMaxUngreetedPerNetwork;
+}
+
 tl::unexpected<Error> Hub::refuse_busy(const char* why) { return concord::refuse(concord::Code::kBusy, why); }
 
 void Hub::text(Connection connection, std::string_view text, std::int64_t now) {
@@ -56,13 +80,16 @@ void Hub::text(Connection connection, std::string_view text, std::int64_t now) {
   const auto it = links_.find(connection);
   if (it == links_.end() || it->second.closing) return;
   Link& link = it->second;
-  auto read = read_client_text(text);
   Session* session = link.session ? find(*link.session) : nullptr;
+  if (session != nullptr && !session->texts.take(static_cast<double>(text.size()), now))
+    return close(connection, link, 1008, Code::kRate, "more bytes of text than allowed");
+  auto read = read_client_text(text);
   if (!read) {
     const BadText& bad = read.error();
     if (session == nullptr) return close(connection, link, 1002, Code::kBadMessage, bad.message);
     const Code code = bad.is_name ? Code::kBadName : Code::kBadMessage;
     if (bad.id) return refuse_now(connection, link, *session, *bad.id, "?", code, bad.message, now);
+    audit(*session, "?", 0, text_of(code));
     count_refusal(connection, link, now);
     return tell(*session, "bad", event_text(BadEvent{bad.message.substr(0, 400)}));
   }
@@ -74,14 +101,18 @@ void Hub::text(Connection connection, std::string_view text, std::int64_t now) {
     return greet(connection, link, *request, now);
   }
   if (request != nullptr) return take_request(connection, *session, *request, now);
-  if (!session->notices.take(1, now)) return count_refusal(connection, link, now);
+  if (!session->notices.take(1, now)) {
+    audit(*session, "notice", 0, text_of(Code::kRate));
+    return count_refusal(connection, link, now);
+  }
   take_notice(*session, std::get<NoticeBody>(*read));
 }
 
 bool Hub::is_new(Connection connection, Link& link, Session& session, std::int64_t id, const std::string& name,
                  std::int64_t now) {
-  if (const SharedText said = session.answered.find(id)) {
-    session.outbox.lossless(said);
+  if (const RecentTexts::Said* said = session.answered.find(id)) {
+    for (const FramePointer& frame : said->frames) enqueue(connection, link, frame);
+    session.outbox.lossless(said->text);
     ready(session);
     return false;
   }
@@ -97,8 +128,10 @@ void Hub::take_request(Connection connection, Session& session, const ClientRequ
   const auto no = [&](Code code, const std::string& message) {
     refuse_now(connection, link, session, request.id, info.name, code, message, now);
   };
+  // First of all: what is asked again is answered again, and costs as much.
+  if (!session.requests.take(cost_of(request.body), now))
+    return no(Code::kRate, "more requests than allowed; see limits");
   if (!is_new(connection, link, session, request.id, info.name, now)) return;
-  if (!session.requests.take(1, now)) return no(Code::kRate, "more requests than allowed; see limits");
   session.highest_id = request.id;
   if (std::holds_alternative<HelloRequest>(request.body)) return no(Code::kBadRequest, "hello was said already");
   if (!may(session.identity.role, info.role)) {
@@ -106,7 +139,7 @@ void Hub::take_request(Connection connection, Session& session, const ClientRequ
               "needs the role " + std::string(text_of(info.role)) + ", and yours is " + text_of(session.identity.role));
   }
   if (session.pending.size() >= kMaxPending) return no(Code::kBusy, "64 requests wait for their answers");
-  session.pending.emplace(request.id, info.name);
+  session.pending.emplace(request.id, Session::Pending{info.name, {}});
   const Ask ask{session.person, request.id};
   if (const auto* clock = std::get_if<ClockRequest>(&request.body))
     return answer(ask, ClockAnswer{clock->t0, now, now});
@@ -136,13 +169,15 @@ void Hub::binary(Connection connection, ByteSpan bytes, std::int64_t now) {
   };
   if (info == nullptr || id == 0)
     return no(Code::kBadMessage, "clients send frames of kind 65 and 66, under a request's id");
+  if (!session->requests.take(1, now)) return no(Code::kRate, "more requests than allowed; see limits");
   if (!is_new(connection, link, *session, id, info->name, now)) return;
   if (!session->uploads.take(static_cast<double>(bytes.size()), now))
     return no(Code::kRate, "more bytes than allowed; see limits");
+  if (!session->looks.take(1, now)) return no(Code::kRate, "at most 4 looks a second; 20 at once");
   session->highest_id = id;
   if (!may(session->identity.role, info->role)) return no(Code::kDenied, "who only looks cannot map");
   if (session->pending.size() >= kMaxPending) return no(Code::kBusy, "64 requests wait for their answers");
-  session->pending.emplace(id, info->name);
+  session->pending.emplace(id, Session::Pending{info->name, {}});
   handlers_.on_upload({session->person, id}, *frame);
 }
 
@@ -179,6 +214,11 @@ void Hub::count_refusal(Connection connection, Link& link, std::int64_t now) {
 
 void Hub::close(Connection connection, Link& link, std::uint16_t code, Code why, const std::string& message) {
   if (link.closing) return;
+  const Session* session = link.session ? find(*link.session) : nullptr;
+  const std::string who = session != nullptr ? "by=" + Json(session->identity.name).dump() + " " : "";
+  if (code != 1001)
+    handlers_.audit("refused " + who + "from=" + link.peer.address +
+                    " request=connection close=" + std::to_string(code) + " outcome=" + text_of(why));
   link.closing = Closing{code, message.substr(0, 100)};
   link.last = share(event_text(ByeEvent{why, message.substr(0, 400)}));
   ready_.insert(connection);

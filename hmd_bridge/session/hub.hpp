@@ -43,6 +43,8 @@ class Hub {
   static constexpr std::int64_t kParked = 120'000'000;     ///< a session outlives its connection by so long
   static constexpr std::size_t kMaxPending = 64;           ///< requests of one client that wait
   static constexpr std::int64_t kMaxParked = 64;
+  static constexpr std::size_t kMaxUngreeted = 64;           ///< connections that have not said hello, from elsewhere
+  static constexpr std::size_t kMaxUngreetedPerNetwork = 8;  ///< of them from one address, or one IPv6 /64
 
   /// What becomes of what clients say; called from within text() and binary().
   struct Handlers {
@@ -53,6 +55,8 @@ class Hub {
     std::function<void(Session&)> on_tracking;
     std::function<void(Session&, bool resumed)> on_begin;
     std::function<void(const Session&)> on_end;
+    /// Why a client may not be this agent; nothing: it may.
+    std::function<std::optional<std::string>(const std::string& agent)> not_for_clients;
     /// Every refused and every changing request, in one line.
     std::function<void(const std::string&)> audit;
   };
@@ -87,7 +91,7 @@ class Hub {
     answer_text_to(ask, std::make_shared<const std::string>(answer_text(ask.id, answer)), "OK");
   }
   void refuse(const Ask& ask, Code code, const std::string& message);
-  /// A frame that a request asked for, before its answer; not heeded once the client has gone.
+  /// A frame that a request asked for, before its answer; kept with it for a client that lost its connection.
   void send(const Ask& ask, FramePointer frame);
   /// Only the newest of a key is kept; who comes later is told it at once.
   void tell_all(const std::string& key, std::string text);
@@ -111,6 +115,11 @@ class Hub {
   Looked look(Session& session, std::uint32_t stream, const ViewRegion& region);
   [[nodiscard]] bool look_away(Session& session, std::uint32_t stream);
 
+  /// A line of the audit about who did not get as far as the hub.
+  void note_refused(const std::string& address, const std::string& request, const std::string& outcome) const {
+    handlers_.audit("refused from=" + address + " request=" + request + " outcome=" + outcome);
+  }
+
   [[nodiscard]] std::size_t connected() const { return links_.size(); }
 
  private:
@@ -126,10 +135,14 @@ class Hub {
     TokenBucket refusals;
   };
 
+  /// Clients that are in: who has not said hello yet takes no place of theirs.
+  [[nodiscard]] std::size_t greeted() const;
+  [[nodiscard]] bool too_many_wait(const Peer& peer) const;
   void greet(Connection connection, Link& link, const ClientRequest& request, std::int64_t now);
   [[nodiscard]] static tl::unexpected<Error> refuse_busy(const char* why);
   void begin(Connection connection, Link& link, Session& session, const HelloRequest& hello, std::int64_t id,
              bool resumed, std::int64_t now);
+  [[nodiscard]] static std::optional<Session::Kept> kept_of(const Session& session, std::int64_t revision);
   [[nodiscard]] Session* resumable(const HelloRequest& hello, const Identity& identity);
   void take_request(Connection connection, Session& session, const ClientRequest& request, std::int64_t now);
   /// Whether the request is new; one that was asked before is answered from what was said.
@@ -138,6 +151,7 @@ class Hub {
   void take_notice(Session& session, const NoticeBody& notice);
   void refuse_now(Connection connection, Link& link, Session& session, std::int64_t id, const std::string& name,
                   Code code, const std::string& message, std::int64_t now);
+  void enqueue(Connection connection, Link& link, FramePointer frame);
   void answer_text_to(const Ask& ask, SharedText text, const char* outcome);
   void count_refusal(Connection connection, Link& link, std::int64_t now);
   void close(Connection connection, Link& link, std::uint16_t code, Code why, const std::string& message);

@@ -38,7 +38,10 @@ void Hub::greet(Connection connection, Link& link, const ClientRequest& request,
                        return other.connection && other.agent == *hello.agent && other.identity.name != identity.name;
                      });
   if (taken) return no(Code::kDenied, "somebody else is this agent now; choose another name for it");
+  const auto why = hello.agent ? handlers_.not_for_clients(*hello.agent) : std::nullopt;
+  if (why) return no(Code::kDenied, why->c_str());
   if (Session* old = resumable(hello, identity)) return begin(connection, link, *old, hello, request.id, true, now);
+  if (greeted() >= config_.max_clients) return no(Code::kBusy, "there are as many clients as may be");
   ++last_session_;
   auto [it, fresh] = sessions_.try_emplace(last_session_, last_session_, gate_.new_secret(), identity, config_.limits);
   begin(connection, link, it->second, hello, request.id, false, now);
@@ -54,6 +57,12 @@ Session* Hub::resumable(const HelloRequest& hello, const Identity& identity) {
   return nullptr;
 }
 
+/// What a client has that comes back with this revision, of the last complete that it heard.
+std::optional<Session::Kept> Hub::kept_of(const Session& session, std::int64_t revision) {
+  if (!session.whole || revision < session.whole->first || revision > session.whole->last) return std::nullopt;
+  return Session::Kept{session.whole->region, revision};
+}
+
 void Hub::begin(Connection connection, Link& link, Session& session, const HelloRequest& hello, std::int64_t id,
                 bool resumed, std::int64_t now) {
   if (session.connection) {  // it lost that one and we have not noticed yet
@@ -66,14 +75,13 @@ void Hub::begin(Connection connection, Link& link, Session& session, const Hello
     park(session, now);
   }
   session.outbox = Outbox();
-  session.kept.reset();
-  const auto view = session.views.find(kMapStream);
   const ShownLayer* map = layers_.find(kMapStream);
-  if (resumed && map != nullptr && hello.resume->epoch == map->epoch && view != session.views.end()) {
-    session.kept = Session::Kept{view->second.region(), hello.resume->revision};
-  }
+  const bool has_blocks = resumed && map != nullptr && hello.resume->epoch == map->epoch;
+  session.kept = has_blocks ? kept_of(session, hello.resume->revision) : std::nullopt;
+  session.whole.reset();
   session.views.clear();
   session.told_complete.clear();
+  session.told_skipped = 0;
   session.path_frames.clear();
   session.told_paths.clear();
   session.connection = connection;
@@ -82,7 +90,8 @@ void Hub::begin(Connection connection, Link& link, Session& session, const Hello
   session.agent = hello.agent.value_or("");
   session.frame_id = hello.frame_id.value_or("");
   session.tracking_lost = false;
-  session.highest_id = std::max(session.highest_id, id);
+  // What was asked before the connection was lost may come yet, under ids below this hello's.
+  if (!resumed) session.highest_id = id;
   link.session = session.person;
 
   const SessionLimits& limits = config_.limits;
@@ -99,8 +108,11 @@ void Hub::begin(Connection connection, Link& link, Session& session, const Hello
        limits.upload_bytes_per_second, static_cast<std::int64_t>(limits.burst_requests),
        static_cast<std::int64_t>(limits.burst_upload_bytes), 30.0}};
   session.outbox.lossless(share(answer_text(id, answer)));
+  // It keeps its blocks, and we do not know which: it is to drop them.
+  if (has_blocks && !session.kept) session.outbox.lossless(share(event_text(EpochEvent{kMapStream, map->epoch})));
   for (const auto& [key, text] : state_) session.outbox.newest(key, text);
-  audit(session, resumed ? "hello(resumed)" : "hello", id, "OK");
+  const std::string as = session.agent.empty() ? "" : " agent=" + session.agent;
+  audit(session, (resumed ? "hello(resumed)" : "hello") + as, id, "OK");
   ready(session);
   handlers_.on_begin(session, resumed);
 }

@@ -89,6 +89,10 @@ SharedText Hub::complete_event(Session& session) {
     Session::Told& told = session.told_complete[stream];
     if (told == now) continue;
     told = now;
+    if (stream == kMapStream) {
+      if (!session.whole) session.whole = Session::Whole{view.region(), layer.revision, layer.revision};
+      session.whole->last = layer.revision;
+    }
     return share(event_text(CompleteEvent{stream, layer.epoch, layer.revision, layer.map_revision, layer.synced}));
   }
   return nullptr;
@@ -100,12 +104,14 @@ void Hub::ready(const Session& session) {
 
 void Hub::answer_text_to(const Ask& ask, SharedText text, const char* outcome) {
   Session* session = find(ask.session);
-  if (session == nullptr) return;
+  if (session == nullptr)
+    return handlers_.audit("late person=" + std::to_string(ask.session) + " id=" + std::to_string(ask.id) +
+                           " outcome=" + outcome);
   const auto it = session->pending.find(ask.id);
   if (it == session->pending.end()) return;
-  const std::string name = it->second;
+  const std::string name = it->second.name;
+  session->answered.keep(ask.id, text, std::move(it->second.frames));
   session->pending.erase(it);
-  session->answered.keep(ask.id, text);
   if (session->connection) session->outbox.lossless(std::move(text));
   const auto& infos = request_infos();
   const auto info = std::find_if(infos.begin(), infos.end(), [&](const RequestInfo& i) { return i.name == name; });
@@ -121,14 +127,20 @@ void Hub::refuse(const Ask& ask, Code code, const std::string& message) {
 
 void Hub::send(const Ask& ask, FramePointer frame) {
   Session* session = find(ask.session);
-  if (session == nullptr || !session->connection) return;
-  Link& link = links_.at(*session->connection);
+  if (session == nullptr) return;
+  const auto it = session->pending.find(ask.id);
+  if (it == session->pending.end()) return;
+  it->second.frames.push_back(frame);
+  if (session->connection) enqueue(*session->connection, links_.at(*session->connection), std::move(frame));
+}
+
+void Hub::enqueue(Connection connection, Link& link, FramePointer frame) {
   if (link.asked_bytes + frame->size() > Outbox::kMostBytes) {
-    return close(*session->connection, link, 1013, Code::kTooLarge, "answers were not taken in time");
+    return close(connection, link, 1013, Code::kTooLarge, "answers were not taken in time");
   }
   link.asked_bytes += frame->size();
   link.asked.push_back(std::move(frame));
-  ready(*session);
+  ready_.insert(connection);
 }
 
 void Hub::tell_all(const std::string& key, std::string text) {
@@ -160,7 +172,10 @@ void Hub::restart_layer(std::uint32_t stream, const std::string& epoch) {
   layer->epoch = epoch;
   const SharedText text = share(event_text(EpochEvent{stream, epoch}));
   for (auto& [number, session] : sessions_) {
-    if (stream == kMapStream) session.kept.reset();
+    if (stream == kMapStream) {
+      session.kept.reset();
+      session.whole.reset();
+    }
     const auto view = session.views.find(stream);
     if (view == session.views.end()) continue;
     view->second.restart();
@@ -193,19 +208,25 @@ Hub::Looked Hub::look(Session& session, std::uint32_t stream, const ViewRegion& 
   ShownLayer& layer = *layers_.find(stream);
   const auto view = session.views.find(stream);
   session.told_complete.erase(stream);
+  if (stream == kMapStream && session.whole && !(session.whole->region == region)) session.whole.reset();
   ready(session);
   if (view != session.views.end()) {
     view->second.look(layer.store, region);
     return {view->second.in_view(), view->second.lacking()};
   }
-  const bool kept = stream == kMapStream && session.kept && session.kept->region == region;
-  ClientView fresh = kept ? ClientView(layer.store, region, session.kept->revision) : ClientView(layer.store, region);
-  if (stream == kMapStream) session.kept.reset();
+  const bool kept = stream == kMapStream && session.kept;
+  ClientView fresh =
+      kept ? ClientView(layer.store, session.kept->region, session.kept->revision) : ClientView(layer.store, region);
+  if (kept) {
+    fresh.look(layer.store, region);
+    session.kept.reset();
+  }
   const ClientView& placed = session.views.emplace(stream, std::move(fresh)).first->second;
   return {placed.in_view(), placed.lacking()};
 }
 
 bool Hub::look_away(Session& session, std::uint32_t stream) {
+  if (stream == kMapStream) session.whole.reset();
   session.told_complete.erase(stream);
   return session.views.erase(stream) > 0;
 }
@@ -228,7 +249,7 @@ void Hub::tell_behind(std::int64_t now) {
 /// Forgets blocks that have long been empty, once every client that had them knows.
 void Hub::sweep() {
   for (const auto& [number, session] : sessions_) {
-    if (!session.connection) return;  // it may come back, with what it had
+    if (!session.connection || session.kept) return;  // it may come back, or look again, with what it had
   }
   for (auto& [stream, layer] : layers_.all()) {
     if (!layer.changed.empty()) continue;  // views have not been told: they may lack blocks that are empty meanwhile

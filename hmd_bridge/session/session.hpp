@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "access/gate.hpp"
 #include "access/token_bucket.hpp"
@@ -21,23 +22,34 @@ struct SessionLimits {
   double requests_per_second = 30, burst_requests = 100;
   double notices_per_second = 200, burst_notices = 400;
   double upload_bytes_per_second = 4e6, burst_upload_bytes = 16e6;
+  double looks_per_second = 4, burst_looks = 20;  ///< frames of meshes or voxels: each is a look at the whole room
+  double text_bytes_per_second = 1e6, burst_text_bytes = 8e6;
   /// Refusals of any kind; who goes on beyond is disconnected.
   double refusals_per_second = 10, burst_refusals = 100;
 };
 
-/// The answers given last, for who lost a connection and asks again under an old id.
+/// The answers given last, each with the frames that come before it, for who lost a connection and asks again under an
+/// old id.
 class RecentTexts {
  public:
   static constexpr std::size_t kMostBytes = 1 << 20;
   static constexpr std::size_t kMost = 256;
+  static constexpr std::size_t kMostFrameBytes = 8 << 20;  ///< of all frames; with the oldest goes its answer
 
-  void keep(std::int64_t id, SharedText text);
-  [[nodiscard]] SharedText find(std::int64_t id) const;
+  struct Said {
+    SharedText text;
+    std::vector<FramePointer> frames;
+  };
+  void keep(std::int64_t id, SharedText text, std::vector<FramePointer> frames = {});
+  /// Null: not kept.
+  [[nodiscard]] const Said* find(std::int64_t id) const;
 
  private:
-  std::map<std::int64_t, SharedText> texts_;
+  void drop(std::deque<std::int64_t>::iterator which);
+
+  std::map<std::int64_t, Said> said_;
   std::deque<std::int64_t> order_;
-  std::size_t bytes_ = 0;
+  std::size_t bytes_ = 0, frame_bytes_ = 0;
 };
 
 /// One client, also while its connection is lost.
@@ -48,7 +60,9 @@ struct Session {
         identity(std::move(who)),
         requests(limits.requests_per_second, limits.burst_requests),
         notices(limits.notices_per_second, limits.burst_notices),
-        uploads(limits.upload_bytes_per_second, limits.burst_upload_bytes) {}
+        uploads(limits.upload_bytes_per_second, limits.burst_upload_bytes),
+        looks(limits.looks_per_second, limits.burst_looks),
+        texts(limits.text_bytes_per_second, limits.burst_text_bytes) {}
 
   std::int64_t person;
   std::string secret;
@@ -66,10 +80,14 @@ struct Session {
   std::int64_t parked_at = 0;
 
   Outbox outbox;
-  TokenBucket requests, notices, uploads;
+  TokenBucket requests, notices, uploads, looks, texts;
 
   std::int64_t highest_id = 0;
-  std::map<std::int64_t, std::string> pending;  ///< request ids that wait for their answers, and what they are called
+  struct Pending {
+    std::string name;
+    std::vector<FramePointer> frames;  ///< that come before its answer
+  };
+  std::map<std::int64_t, Pending> pending;  ///< requests that wait for their answers, by id
   RecentTexts answered;
 
   std::map<std::uint32_t, ClientView> views;  ///< by stream
@@ -91,6 +109,12 @@ struct Session {
   };
   std::map<std::string, ToldPath> told_paths;  ///< by robot
 
+  /// The region of stream 0 that it was told to have whole, and the revisions of that; nothing once it looks elsewhere.
+  struct Whole {
+    ViewRegion region;
+    std::int64_t first, last;
+  };
+  std::optional<Whole> whole;
   /// What it still has of stream 0 since before its connection was lost.
   struct Kept {
     ViewRegion region;

@@ -59,6 +59,7 @@ class Rig::Parts {
     config.idle_seconds = options.idle_seconds;
     config.close_seconds = options.close_seconds;
     config.listener = options.listener;
+    config.origins = {"https://lab.example"};
     Server server(io, node.hub(), gate, tokens, files, config, [&bus] { return bus.now(); });
     port = server.port();
     the_node = &node;

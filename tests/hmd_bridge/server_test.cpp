@@ -127,6 +127,11 @@ TEST_F(Served, PagesFromElsewhereAreRefused) {
   EXPECT_EQ(TlsClient(rig.port()).upgrade("localhost", "null"), 403);
   EXPECT_EQ(TlsClient(rig.port()).upgrade("localhost:1", "https://localhost:1"), 101);
   EXPECT_EQ(TlsClient(rig.port()).upgrade("localhost", "", "other.v1"), 400);
+  // One that the site file lists may connect; it is not local for that.
+  TlsClient listed(rig.port());
+  ASSERT_EQ(listed.upgrade("localhost", "https://lab.example"), 101);
+  listed.send_text(request_text(1, hello_of()));
+  EXPECT_EQ(outcome(listed, 1), "BAD_TOKEN");
   // A name that was made to resolve to this machine: its page passes for its own origin, but is not local.
   TlsClient rebound(rig.port());
   ASSERT_EQ(rebound.upgrade("evil.example", "https://evil.example"), 101);
@@ -208,10 +213,18 @@ TEST_F(Served, OneWhoReadsNothingHoldsNobodyUp) {
   TlsClient stalled(rig.port());
   ASSERT_EQ(stalled.upgrade("localhost"), 101);
   stalled.send_text(request_text(1, hello_of()));
-  stalled.send_text(notice_text(CreditNotice{1'000'000'000}));
+  EXPECT_EQ(outcome(stalled, 1), "OK");
   rig.in_server([](BridgeNode& node, Bus&) {
-    for (int i = 0; i < 2000; ++i) node.hub().tell_all("noise", event_text(BadEvent{std::string(300, 'x')}));
+    ASSERT_EQ(node.hub().sessions().size(), 1u);
+    Outbox& outbox = node.hub().sessions().begin()->second.outbox;
+    const auto text = std::make_shared<const std::string>(event_text(BadEvent{std::string(300, 'x')}));
+    for (int i = 0; i < 20'000; ++i) {
+      outbox.lossless(text);
+      ASSERT_LE(outbox.waiting_bytes(), Outbox::kMostBytes);
+    }
+    EXPECT_TRUE(outbox.overflowed());
   });
+  rig.wait_for([](BridgeNode& node) { return node.hub().connected() == 0; });  // it is cut off, with no help of its own
   TlsClient other(rig.port());
   ASSERT_EQ(other.upgrade("localhost"), 101);
   other.send_text(request_text(1, hello_of()));

@@ -77,7 +77,7 @@ TEST_F(Aligning, WhatCannotBeFoundIsRefusedForItsReason) {
   EXPECT_CODE(ana.ask(AlignRequest{"robot1", {}, Pose{{0, 0, 0}, {0, 0, 0, 0}}}), "BAD_REQUEST");
   lab.agent_maps("robot2", voxels_of(other_room()));
   const Json other = ana.ask(AlignRequest{"robot2", "robot1", rough(kT_left_right)});
-  EXPECT_TRUE(has_code(other, "LOW_OVERLAP") || has_code(other, "DIVERGED")) << other;
+  EXPECT_CODE(other, "LOW_OVERLAP");
   EXPECT_FALSE(agent("robot2")["aligned"].get<bool>());
   lab.agent_maps("robot3", voxels_of(corridor(0, 9)));
   lab.agent_maps("robot4", voxels_of(corridor(2, 11)));
@@ -102,8 +102,7 @@ TEST_F(Aligning, DecisionsHoldOnlyForWhatStands) {
   lab.agent_maps("robot2", voxels_of(right_part()));
   EXPECT_CODE(ana.ask(ResetRequest{"robot2"}), "OK");
   lab.run(2);
-  EXPECT_TRUE(has_code(ana.ask(AlignAcceptRequest{second}), "BAD_FRAME") ||
-              has_code(ana.ask(AlignAcceptRequest{second}), "EXPIRED"));
+  EXPECT_CODE(ana.ask(AlignAcceptRequest{second}), "BAD_FRAME");
 }
 
 TEST_F(Aligning, AHeadsetRefersItselfToARobotThatItSees) {
@@ -136,7 +135,7 @@ TEST_F(Aligning, AHeadsetRefersItselfToARobotThatItSees) {
   say();
   const Json wrong =
       bert.ask(ReferenceRequest{"robot1", pose_of(transform(3, 0, 0, 2) * kT_left_right.inverse() * T_agent_base)});
-  EXPECT_TRUE(has_code(wrong, "DIVERGED") || has_code(wrong, "LOW_OVERLAP")) << wrong;
+  EXPECT_CODE(wrong, "LOW_OVERLAP");
 
   EXPECT_CODE(bert.ask(ReferenceRequest{"nobody", seen}), "NO_ROBOT");
   EXPECT_CODE(bert.ask(ReferenceRequest{"quest", seen}), "BAD_REQUEST");

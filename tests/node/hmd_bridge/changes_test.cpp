@@ -47,6 +47,29 @@ TEST_F(Working, EditsAreRefusedForTheirReasons) {
   EXPECT_CODE(ana.ask(add(box(3.2, 3.2, 0.2, 3.4, 3.4, 0.4))), "OK");
 }
 
+TEST_F(Working, MovesAreRefusedForTheirReasons) {
+  const Shape wall = box(1, 1, 0.2, 1.5, 1.5, 0.5);
+  EditRequest move{EditOp::kMove, Frame::kMap, wall, std::array<double, 3>{1, 0, 0}, {}};
+  move.base_revision = ana.ask(add(wall))["answer"]["revision"].get<std::int64_t>() - 1;
+  EXPECT_CODE(ana.ask(move), "STALE_REV");
+  move.base_revision.reset();
+  move.move = std::array<double, 3>{1e6, 0, 0};
+  EXPECT_CODE(ana.ask(move), "OUT_OF_BOUNDS");
+  Client bert(lab);
+  HelloRequest hello;
+  hello.version = kProtocol;
+  hello.name = "bert";
+  EXPECT_CODE(bert.ask(hello), "OK");
+  move.move = std::array<double, 3>{2, 2, 0};
+  EXPECT_CODE(bert.ask(LeaseHoldRequest{"there", Frame::kMap, Box{{3, 3, 0}, {4, 4, 1}}}), "OK");
+  EXPECT_CODE(ana.ask(move), "LOCKED") << "where it would go";
+  EXPECT_CODE(bert.ask(LeaseFreeRequest{"there"}), "OK");
+  EXPECT_CODE(bert.ask(LeaseHoldRequest{"here", Frame::kMap, Box{{1, 1, 0}, {2, 2, 1}}}), "OK");
+  EXPECT_CODE(ana.ask(move), "LOCKED") << "where it stands";
+  EXPECT_CODE(bert.ask(LeaseFreeRequest{"here"}), "OK");
+  EXPECT_CODE(ana.ask(move), "OK");
+}
+
 TEST_F(Working, ZonesAreAddedChangedAndDeleted) {
   const ZoneAddRequest zone{"dock", ZoneKind::kNoGo, Frame::kMap, Box{{3, 3, 0}, {4, 4, 1}}};
   const Json added = ana.ask(zone);

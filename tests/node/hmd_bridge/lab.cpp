@@ -29,9 +29,14 @@ Lab::Lab(With with, double resolution) {
   if (with != kWithoutMerge) merge = std::make_unique<MergeNode>(context("merge"));
   planner = std::make_unique<PlannerNode>(context("planner"), std::launch::deferred);
   gate = std::make_unique<Gate>(random_secret);
+  restart_bridge();
+}
+
+void Lab::restart_bridge() {
+  bridge.reset();
   Hub::Config config = hub_config(site);
   config.local_role = Role::kRobot;
-  bridge = std::make_unique<BridgeNode>(context("hmd-bridge"), *gate, config);
+  bridge = std::make_unique<BridgeNode>(NodeContext{*bus, counters, site, "hmd-bridge", bus->now()}, *gate, config);
   run(1.5);
 }
 

@@ -36,6 +36,9 @@ class Lab {
   void robot_maps();
   /// An agent sends a submap, in the frame odom.
   void agent_maps(const std::string& agent, const BrickMap& map);
+  /// robot1 says nothing any more.
+  void stop_robot() { sent_.erase("robot1"); }
+  void restart_bridge();
   /// Where robot1 is, in its own frame.
   void robot_at(double x, double y);
 

@@ -107,5 +107,19 @@ TEST_F(Working, MapsAreSavedListedAndLoaded) {
   EXPECT_CODE(ana.ask(LoadRequest{"broken", {}, {}}), "CORRUPT");
 }
 
+TEST_F(Working, AnyAgentCanBeLookedAtOneAfterTheOther) {
+  for (int i = 0; i < 40; ++i) {
+    const std::string agent = "cart" + std::to_string(i);
+    lab.bus->publish("in/" + agent + "/pose", encode(AgentPose{agent, "odom", Transform::Identity(), lab.bus->now()}));
+  }
+  lab.run(1.5);
+  for (int i = 0; i < 40; ++i) {
+    const Json view = ana.ask(ViewRequest{Layer::kAgent, "cart" + std::to_string(i), Frame::kMap, {0, 0, 0}, {5}, {}});
+    ASSERT_TRUE(has_code(view, "OK")) << i;
+    EXPECT_CODE(ana.ask(ViewCloseRequest{view["answer"]["stream"]}), "OK");
+    lab.run(0.2);
+  }
+}
+
 }  // namespace
 }  // namespace concord::hmd

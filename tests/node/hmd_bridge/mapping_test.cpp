@@ -40,10 +40,50 @@ TEST_F(Bridge, AScannedMeshBecomesASubmapWithFreeSpace) {
   EXPECT_CODE(ana.upload(FrameKind::kMesh, 1, 0, mesh_payload(floor_look())), "DUP_SEQ");
 }
 
-TEST_F(Working, ResetAndRemoveEndAnAgent) {
+TEST_F(Working, AResetEndsWhatAnAgentMapped) {
   EXPECT_CODE(ana.ask(ResetRequest{"nobody"}), "NO_AGENT");
+  EXPECT_GT(lab.bridge->world().map().map().brick_count(), 0u);
   EXPECT_CODE(ana.ask(ResetRequest{"robot1"}), "OK");
+  lab.run(2);
+  EXPECT_EQ(lab.bridge->world().map().map().brick_count(), 0u);
+}
+
+TEST_F(Working, ARemovedAgentIsGoneWithItsMap) {
   EXPECT_CODE(ana.ask(RemoveRequest{"nobody"}), "NO_AGENT");
+  lab.stop_robot();
+  EXPECT_CODE(ana.ask(RemoveRequest{"robot1"}), "OK");
+  lab.run(2);
+  EXPECT_TRUE(ana.ask(AgentsRequest{})["answer"]["agents"].empty());
+  EXPECT_EQ(lab.bridge->world().map().map().brick_count(), 0u);
+}
+
+TEST_F(Bridge, LooksHaveARate) {
+  become_agent(ana, "quest", false);
+  int taken = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Json answer = ana.upload(FrameKind::kMesh, 0, taken, mesh_payload({floor_look().T_own_sensor, {}}));
+    if (code_of_answer(answer) == "OK") {
+      ++taken;
+    } else {
+      EXPECT_CODE(answer, "RATE");
+    }
+  }
+  EXPECT_GE(taken, 20);
+  EXPECT_LT(taken, 30);
+}
+
+TEST_F(Bridge, AnEmptyLookAfterARestartLeavesTheSubmapAlone) {
+  become_agent(ana, "quest", false);
+  EXPECT_CODE(ana.upload(FrameKind::kVoxels, 1, 0, voxels_payload(voxel_look(0.1, true))), "OK");
+  lab.run(3);
+  lab.restart_bridge();
+  Client back(lab);
+  EXPECT_CODE(back.hello("quest"), "OK");
+  EXPECT_CODE(back.upload(FrameKind::kMesh, 0, 0, mesh_payload({floor_look().T_own_sensor, {}})), "OK");
+  lab.run(4);
+  const Json agents = back.ask(AgentsRequest{})["answer"]["agents"];
+  ASSERT_EQ(agents.size(), 1u);
+  EXPECT_EQ(agents[0]["occupied"], 8) << "nothing was scanned anew that could take its place";
 }
 
 TEST_F(Bridge, AfterAResetTheFrameIsOver) {

@@ -100,5 +100,22 @@ TEST_F(Working, AVirtualObstacleForcesAnotherPath) {
   EXPECT_CODE(ana.ask(ObstacleRemoveRequest{"none"}), "NOT_FOUND");
 }
 
+/// A planner that is too busy to look at the map says the old path again and again.
+TEST_F(Working, AnObstacleOfWhichNoPlannerSaysWhatItDoesIsTakenBack) {
+  concord::Path path;
+  path.id = "old";
+  path.robot = "robot1";
+  path.active = true;
+  path.status = "OK";
+  const auto alive = std::make_shared<bool>(true);
+  lab.bus->every(
+      500'000, [&] { lab.bus->publish("out/path/robot1", encode(path)); }, alive);
+  lab.run(1);
+  EXPECT_CODE(ana.ask(ObstacleAddRequest{Frame::kMap, Box{{3, 0, 0.1}, {3.2, 3, 0.8}}, {}}), "TIMEOUT");
+  lab.run(1);
+  const Json map = ana.ask(SceneGetRequest{Frame::kMap, {3.1, 1.5, 0.5}, 0.3});
+  EXPECT_TRUE(code_of_answer(map) == "OK" && map["answer"]["voxels"]["boxes"].empty()) << map;
+}
+
 }  // namespace
 }  // namespace concord::hmd

@@ -91,6 +91,142 @@ TEST_F(Bridge, ALostSessionGoesOnAndNothingIsDoneTwice) {
   EXPECT_FALSE(back.frames[0].head.whole);
 }
 
+TEST_F(Bridge, WhatNeverArrivedIsAskedAfterTheResumeUnderItsOldId) {
+  const Json first = ana.hello()["answer"];
+  place_robot();
+  const std::int64_t lost = ana.next_id();
+  ana.lose();
+  Client back(lab);
+  HelloRequest hello;
+  hello.version = kProtocol;
+  hello.name = "ana";
+  hello.resume = Resume{first["session"], "", 0};
+  ASSERT_TRUE(back.ask_text(lost + 1, request_text(lost + 1, hello))["answer"]["resumed"].get<bool>());
+  EXPECT_CODE(back.ask_text(lost, request_text(lost, add(box(1, 1, 0.2, 1.5, 1.5, 0.5)))), "OK");
+  EXPECT_CODE(back.ask_text(lost + 2, request_text(lost + 2, AgentsRequest{})), "OK");
+}
+
+/// Somebody who has region A whole comes back after a view of B of which nothing arrived.
+TEST_F(Bridge, AResumeAfterAnotherViewDropsWhatTheServerCannotKnow) {
+  const Json first = ana.hello()["answer"];
+  place_robot();
+  EXPECT_CODE(ana.ask(ViewRequest{Layer::kMap, {}, Frame::kMap, {0, 0, 0}, {1}, {}}), "OK");
+  lab.run(0.5);
+  ana.read();
+  const Json complete = ana.events["complete"];
+  ana.frames.clear();
+  ASSERT_EQ(code_of_answer(ana.ask(ViewRequest{Layer::kMap, {}, Frame::kMap, {0, 0, 0}, {1000}, {}})), "OK");
+  ana.lose();
+  Client back(lab);
+  HelloRequest hello;
+  hello.version = kProtocol;
+  hello.name = "ana";
+  hello.resume = Resume{first["session"], complete["epoch"], complete["revision"].get<std::int64_t>() - 1};
+  ASSERT_TRUE(back.ask_text(10, request_text(10, hello))["answer"]["resumed"].get<bool>());
+  EXPECT_EQ(back.events["epoch"]["stream"], 0) << "it is to drop what it has";
+  back.note(CreditNotice{1'000'000});
+  const Json view =
+      back.ask_text(11, request_text(11, ViewRequest{Layer::kMap, {}, Frame::kMap, {0, 0, 0}, {1000}, {}}));
+  EXPECT_EQ(view["answer"]["lacking"], view["answer"]["blocks"]);
+}
+
+TEST_F(Bridge, WhoLooksElsewhereFirstAfterAResumeForgetsWhatItHad) {
+  const Json first = ana.hello()["answer"];
+  place_robot();
+  EXPECT_CODE(ana.ask(ViewRequest{Layer::kMap, {}, Frame::kMap, {0, 0, 0}, {1000}, {}}), "OK");
+  lab.run(0.5);
+  ana.read();
+  const Json complete = ana.events["complete"];
+  ana.lose();
+  Client back(lab);
+  HelloRequest hello;
+  hello.version = kProtocol;
+  hello.name = "ana";
+  hello.resume = Resume{first["session"], complete["epoch"], complete["revision"]};
+  ASSERT_TRUE(back.ask_text(10, request_text(10, hello))["answer"]["resumed"].get<bool>());
+  back.note(CreditNotice{1'000'000});
+  EXPECT_CODE(back.ask_text(11, request_text(11, ViewRequest{Layer::kMap, {}, Frame::kMap, {500, 0, 0}, {1}, {}})),
+              "OK");
+  lab.run(0.3);
+  back.read();
+  ASSERT_EQ(back.frames.size(), 1u);
+  EXPECT_EQ(back.frames[0].head.kind, FrameKind::kForget) << "else old blocks are drawn over new ones";
+}
+
+TEST_F(Bridge, FramesOfALostAnswerComeAgainWithIt) {
+  const Json first = ana.hello()["answer"];
+  place_robot();
+  const std::int64_t id = ana.next_id();
+  const std::string ask = request_text(id, MinimapRequest{"robot1", 0.5});
+  lab.bridge->hub().text(ana.connection, ask, lab.bus->now());
+  lab.run(1);
+  ana.lose();  // the points and the answer wait to be written
+  Client back(lab);
+  HelloRequest hello;
+  hello.version = kProtocol;
+  hello.name = "ana";
+  hello.resume = Resume{first["session"], "", 0};
+  ASSERT_TRUE(back.ask_text(id + 1, request_text(id + 1, hello))["answer"]["resumed"].get<bool>());
+  EXPECT_CODE(back.ask_text(id, ask), "OK");
+  ASSERT_EQ(back.frames.size(), 1u);
+  EXPECT_EQ(back.frames[0].head.kind, FrameKind::kPoints);
+}
+
+TEST_F(Bridge, RepeatsOfOneRequestHaveARateToo) {
+  EXPECT_CODE(ana.hello(), "OK");
+  EXPECT_CODE(ana.ask(AgentsRequest{}), "OK");
+  const std::string again = request_text(ana.last_id(), AgentsRequest{});
+  for (int i = 0; i < 3000; ++i) lab.bridge->hub().text(ana.connection, again, lab.bus->now());
+  EXPECT_EQ(lab.bridge->hub().closing(ana.connection)->code, 1008);
+}
+
+TEST_F(Bridge, RequestsThatWalkOverTheMapCountAsTen) {
+  EXPECT_CODE(ana.hello(), "OK");
+  place_robot();
+  lab.run(10);
+  int answered = 0;
+  for (std::int64_t id = 100; id < 130; ++id)
+    lab.bridge->hub().text(ana.connection, request_text(id, GridRequest{{0.1, 0.8}}), lab.bus->now());
+  ana.read();
+  for (std::int64_t id = 100; id < 130; ++id) answered += code_of_answer(ana.answers[id]) == "OK" ? 1 : 0;
+  EXPECT_EQ(answered, 10);
+}
+
+TEST_F(Bridge, TextHasABoundInBytesAsWell) {
+  EXPECT_CODE(ana.hello(), "OK");
+  const std::string large = R"({"notice":"credit","body":{"bytes":1}})" + std::string(900'000, ' ');
+  for (int i = 0; i < 8; ++i) lab.bridge->hub().text(ana.connection, large, lab.bus->now());
+  EXPECT_FALSE(lab.bridge->hub().closing(ana.connection));
+  lab.bridge->hub().text(ana.connection, large, lab.bus->now());
+  EXPECT_EQ(lab.bridge->hub().closing(ana.connection)->code, 1008);
+}
+
+TEST_F(Bridge, WhoSaysNoHelloTakesNobodysPlace) {
+  Hub& hub = lab.bridge->hub();
+  for (int i = 0; i < 200; ++i) (void)hub.open({"10.0." + std::to_string(i) + ".1", false}, lab.bus->now());
+  EXPECT_TRUE(hub.open({"127.0.0.1", true}, lab.bus->now())) << "who is on this machine gets in";
+  lab.run(6);
+  for (const Hub::Connection connection : hub.take_ready()) {
+    if (hub.closing(connection)) hub.closed(connection, lab.bus->now());
+  }
+  int in = 0;
+  for (int i = 0; i < 20; ++i) in += hub.open({"2001:db8::" + std::to_string(i + 1), false}, lab.bus->now()) ? 1 : 0;
+  EXPECT_EQ(in, 8) << "of one network";
+}
+
+TEST_F(Bridge, WhoIsRefusedOrCutOffIsALineOfTheAudit) {
+  Hub& hub = lab.bridge->hub();
+  const auto lines = [&] { return lab.counters.get("refused.client"); };
+  hub.text(ana.connection, request_text(1, AgentsRequest{}), lab.bus->now());
+  EXPECT_EQ(lines(), 1) << "no hello";
+  Client late(lab), bert(lab);
+  EXPECT_CODE(bert.hello(), "OK");
+  lab.run(6);
+  EXPECT_EQ(lines(), 2) << "a late hello";
+  hub.text(bert.connection, "{", lab.bus->now());
+  EXPECT_EQ(lines(), 3) << "unreadable";
+}
+
 TEST_F(Bridge, AStrangerCannotTakeUpASession) {
   const Json first = ana.hello()["answer"];
   HelloRequest hello;
@@ -99,6 +235,28 @@ TEST_F(Bridge, AStrangerCannotTakeUpASession) {
   hello.resume = Resume{first["session"], "", 0};
   Client eve(lab);
   EXPECT_FALSE(eve.ask(hello)["answer"]["resumed"].get<bool>());
+}
+
+TEST_F(Bridge, NoClientCanPassForARobot) {
+  lab.site.agents["cart"].kind = "robot";
+  lab.site.agents["glasses"].kind = "headset";
+  EXPECT_CODE(Client(lab).hello("cart"), "DENIED") << "the site file has it as a robot";
+  EXPECT_CODE(Client(lab).hello("glasses"), "OK");
+  EXPECT_CODE(Client(lab).hello("robot2"), "OK") << "nobody has said anything of it";
+  lab.robot_maps();
+  EXPECT_CODE(Client(lab).hello("robot1", "odom"), "DENIED") << "its own process sends its map";
+  lab.bus->publish("in/walker/pose", encode(AgentPose{"walker", "odom", Transform::Identity(), lab.bus->now()}));
+  lab.run(0.1);
+  EXPECT_CODE(Client(lab).hello("walker", "odom"), "DENIED") << "its own process says where it is";
+}
+
+TEST_F(Bridge, AHeadsetThatComesBackIsItsAgentAgain) {
+  become_agent(ana, "quest", false);
+  EXPECT_CODE(ana.upload(FrameKind::kMesh, 1, 0, mesh_payload(floor_look())), "OK");
+  lab.run(3);
+  ana.lose();
+  Client back(lab);
+  EXPECT_CODE(back.hello("quest"), "OK") << "it is this bridge that speaks for it";
 }
 
 TEST_F(Bridge, ClockTellsWhenItArrived) {

@@ -9,6 +9,7 @@
 #include "access/gate.hpp"
 #include "access/token_store.hpp"
 #include "server/static_files.hpp"
+#include "store/database.hpp"
 
 namespace concord::hmd {
 namespace {
@@ -100,6 +101,25 @@ TEST(TokenStore, TokensAreFoundByThemselvesOnlyAndNeverWritten) {
   EXPECT_TRUE(store.remove("ana"));
   EXPECT_EQ(store.remove("ana").error().code, concord::Code::kNotFound);
   EXPECT_FALSE(*store.find(*token));
+}
+
+TEST(TokenStore, ATryWritesNothingAndWaitsForNobody) {
+  const Folder folder;
+  const std::filesystem::path file = folder.path / "bridge" / "tokens.db";
+  TokenStore store(file);
+  EXPECT_FALSE(*store.find("concord_guess")) << "nobody has made a token yet";
+  EXPECT_FALSE(std::filesystem::exists(file));
+  const std::string token = store.add("ana", Role::kRobot, kNow).value();
+  const auto old = std::filesystem::last_write_time(file) - std::chrono::hours(1);
+  std::filesystem::last_write_time(file, old);
+  EXPECT_FALSE(*store.find("concord_guess"));
+  EXPECT_EQ((**store.find(token)).name, "ana");
+  EXPECT_EQ(std::filesystem::last_write_time(file), old);
+  constexpr const char* kNoMigration[] = {""};  // its schema is there
+  const Database writer(file, kNoMigration);
+  const auto before = std::chrono::steady_clock::now();
+  EXPECT_EQ(store.find(token).error().code, concord::Code::kBusy);
+  EXPECT_LT(std::chrono::steady_clock::now() - before, std::chrono::seconds(1));
 }
 
 TEST(Secret, EachIsAnotherAndLong) {
