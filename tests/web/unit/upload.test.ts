@@ -28,7 +28,8 @@ class Bench {
       return refusal ? Promise.reject(new RefusedError(refusal)) : Promise.resolve({ sequence, occupied: 7 });
     },
   };
-  readonly uploader = new RoomUploader(this.link as unknown as Link, this.news, () => this.scan.forget(), () => this.reset());
+  readonly uploader = new RoomUploader(this.link as unknown as Link, this.news, () => this.scan.forget(), () => this.reset(), () => { ++this.pauses; return Promise.resolve(); });
+  pauses = 0;
 
   frames = 0;
 
@@ -74,6 +75,17 @@ test("a frame that the server takes no more becomes another, with one word to th
   await bench.look();
   assert.equal(bench.frames, 1);
   assert.deepEqual(bench.uploads.slice(2), [{ sequence: 0, meshes: 1 }, { sequence: 1, meshes: 0 }]);
+});
+
+test("a look that comes too soon for the server is offered again, and nothing of the room is sent twice", async () => {
+  const bench = new Bench();
+  bench.hello(false);
+  bench.refusals.push({ code: "RATE", message: "too many", retry: true }, { code: "RATE", message: "too many", retry: true });
+  await bench.look();
+  await bench.look();
+  assert.equal(bench.pauses, 2);
+  assert.deepEqual(bench.uploads.map((look) => look.meshes), [1, 1, 1, 0]);
+  assert.equal(bench.news.latest.value, null);
 });
 
 test("a look that was under way when the frame became another is not sent in the new one", async () => {

@@ -4,10 +4,12 @@ import type { News } from "../base/news";
 import { Signal } from "../base/signal";
 import { RefusedError } from "../link/failures";
 import type { Link } from "../link/link";
-import { meshFrame, packPayload, type RoomMesh } from "../protocol/frames";
+import { meshFrame, packPayload, type PackedPayload, type RoomMesh } from "../protocol/frames";
 import { payloads } from "./room_scan";
 
 const kLookMs = 500;
+/** A large room takes more looks at once than the server does: so often is one offered again. */
+const kMostOffers = 60;
 
 export class RoomUploader {
   /** Occupied voxels of the own submap so far. */
@@ -25,6 +27,7 @@ export class RoomUploader {
     private readonly anew: () => void,
     /** Called when the server takes nothing more in this frame: another is to begin. */
     private readonly reframe: () => void,
+    private readonly pause = (milliseconds: number) => new Promise<void>((done) => setTimeout(done, milliseconds)),
   ) {
     // To a new session the server knows no look: what it is sent first must be the whole room, or it takes it that the rest is gone.
     link.state.onChange((state) => {
@@ -45,10 +48,9 @@ export class RoomUploader {
     try {
       for (const part of payloads(sensor, meshes)) {
         const packed = await packPayload(part.payload);
-        if (restarts !== this.restarts) return; // it was seen in another frame
-        const sequence = this.sequence++;
-        const { occupied } = await this.link.upload((id) => meshFrame(id, sequence, part.meshes, packed));
-        this.occupied.set(occupied);
+        const taken = await this.offer(part.meshes, packed, restarts);
+        if (!taken) return; // it was seen in another frame
+        this.occupied.set(taken.occupied);
         this.looks.set(this.looks.value + 1);
       }
     } catch (error) {
@@ -56,6 +58,21 @@ export class RoomUploader {
     } finally {
       this.busy = false;
     }
+  }
+
+  /** @return nothing once the frame is another than it was seen in. */
+  private async offer(meshes: number, packed: PackedPayload, restarts: number): Promise<{ occupied: number } | null> {
+    for (let offers = 1; restarts === this.restarts; ++offers) {
+      const sequence = this.sequence++;
+      try {
+        return await this.link.upload((id) => meshFrame(id, sequence, meshes, packed));
+      } catch (error) {
+        const wait = error instanceof RefusedError && error.refusal.code === "RATE" && offers < kMostOffers;
+        if (!wait) throw error;
+      }
+      await this.pause(kLookMs);
+    }
+    return null;
   }
 
   /** The own frame is another. */
