@@ -76,7 +76,9 @@ Hub::Handlers BridgeNode::handlers() {
     own_maps_.begin(session, resumed);
   };
   handlers.on_end = [](const Session&) {};
-  handlers.not_for_clients = [this](const std::string& agent) { return own_maps_.not_for_clients(agent); };
+  handlers.not_for_clients = [this](const std::string& agent, Role role) {
+    return own_maps_.not_for_clients(agent, role);
+  };
   handlers.audit = [this](const std::string& line) {
     context_.counters.add(line.starts_with("refused") ? "refused.client" : "requests.changing");
     spdlog::info("audit: {}", line);

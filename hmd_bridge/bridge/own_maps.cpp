@@ -68,11 +68,12 @@ void OwnMaps::heard_other(const std::string& agent) {
   if (others_.size() < kMostOthers || others_.contains(agent)) others_[agent] = now;
 }
 
-std::optional<std::string> OwnMaps::not_for_clients(const std::string& agent) const {
+std::optional<std::string> OwnMaps::not_for_clients(const std::string& agent, Role role) const {
   const Site& site = desk_.context.site;
   const std::string& kind = site.agent(agent).kind;
   const bool unknown = !site.agents.contains(agent) && kind == AgentConfig().kind;
-  if (kind != "headset" && !unknown) return "the site file has this agent as " + kind + "; choose another name";
+  if (kind != "headset" && !unknown && !may(role, Role::kRobot))
+    return "the site file has this agent as " + kind + ": that takes the role robot, or another name";
   const auto other = others_.find(agent);
   if (other != others_.end() && desk_.now() - other->second < kSilent)
     return "another process speaks for this agent; choose another name";

@@ -20,8 +20,8 @@ class OwnMaps {
   OwnMaps(const OwnMaps&) = delete;
   OwnMaps& operator=(const OwnMaps&) = delete;
 
-  /// Why no client may be this agent: it is a robot, or another process speaks for it.
-  [[nodiscard]] std::optional<std::string> not_for_clients(const std::string& agent) const;
+  /// Why no client of this role may be this agent: it is a robot, or another process speaks for it.
+  [[nodiscard]] std::optional<std::string> not_for_clients(const std::string& agent, Role role) const;
   void begin(const Session& session, bool resumed);
   void tracking(const Session& session);
   void upload(const Ask& ask, const BinaryFrame& frame);

@@ -56,7 +56,7 @@ class Hub {
     std::function<void(Session&, bool resumed)> on_begin;
     std::function<void(const Session&)> on_end;
     /// Why a client may not be this agent; nothing: it may.
-    std::function<std::optional<std::string>(const std::string& agent)> not_for_clients;
+    std::function<std::optional<std::string>(const std::string& agent, Role role)> not_for_clients;
     /// Every refused and every changing request, in one line.
     std::function<void(const std::string&)> audit;
   };

@@ -38,7 +38,7 @@ void Hub::greet(Connection connection, Link& link, const ClientRequest& request,
                        return other.connection && other.agent == *hello.agent && other.identity.name != identity.name;
                      });
   if (taken) return no(Code::kDenied, "somebody else is this agent now; choose another name for it");
-  const auto why = hello.agent ? handlers_.not_for_clients(*hello.agent) : std::nullopt;
+  const auto why = hello.agent ? handlers_.not_for_clients(*hello.agent, identity.role) : std::nullopt;
   if (why) return no(Code::kDenied, why->c_str());
   if (Session* old = resumable(hello, identity)) return begin(connection, link, *old, hello, request.id, true, now);
   if (greeted() >= config_.max_clients) return no(Code::kBusy, "there are as many clients as may be");

@@ -240,7 +240,13 @@ TEST_F(Bridge, AStrangerCannotTakeUpASession) {
 TEST_F(Bridge, NoClientCanPassForARobot) {
   lab.site.agents["cart"].kind = "robot";
   lab.site.agents["glasses"].kind = "headset";
-  EXPECT_CODE(Client(lab).hello("cart"), "DENIED") << "the site file has it as a robot";
+  HelloRequest hello;
+  hello.version = kProtocol;
+  hello.agent = "cart";
+  hello.frame_id = "odom";
+  hello.ticket = lab.gate->issue({"ana", Role::kEdit}, lab.bus->now());
+  EXPECT_CODE(Client(lab).ask(hello), "DENIED") << "the site file has it as a robot";
+  EXPECT_CODE(Client(lab).hello("cart"), "OK") << "whose role is robot may send one";
   EXPECT_CODE(Client(lab).hello("glasses"), "OK");
   EXPECT_CODE(Client(lab).hello("robot2"), "OK") << "nobody has said anything of it";
   lab.robot_maps();

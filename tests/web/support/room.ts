@@ -67,8 +67,9 @@ export class Robot {
    */
   static async map(url: string, name: string, room: RoomMesh, { T_odom_room, base, eyes }: Robots): Promise<Robot> {
     const robot = new Robot(url, name, T_odom_room, base);
-    await new Promise<void>((ready) => {
+    await new Promise<void>((ready, failed) => {
       robot.link.onReady = () => ready();
+      robot.link.state.onChange((state) => state.state === "refused" && failed(new Error(`${name}: ${state.why}`)));
       robot.link.connect();
     });
     await robot.look(room, eyes);
