@@ -42,6 +42,8 @@ class AssetsNode {
   /// Whether this injection was asked before, wherever it was to go; it is then answered as that one.
   [[nodiscard]] bool ask_again(const AssetRequest& request);
   [[nodiscard]] const std::map<std::string, Asset>& assets() const { return assets_; }
+  /// Whether all is known that merge has said it holds.
+  [[nodiscard]] bool is_up_to_date() const { return heard_revision_ >= 0 && known_revision_ >= heard_revision_; }
 
  private:
   void put(const AssetRequest& request, std::uint64_t content);
@@ -54,7 +56,6 @@ class AssetsNode {
   void ask_history();
   void take_back(const Labels::Waiting& refused, const Answer& why);
   void move_back(const std::string& edit_id, const Answer& why);
-  [[nodiscard]] bool is_up_to_date() const { return heard_revision_ >= 0 && known_revision_ >= heard_revision_; }
   void answer_askers();
   void send_waiting();
   void list();

@@ -16,6 +16,7 @@ using Reassign = LabelCorrection::Reassign;
 using TakeOff = LabelCorrection::TakeOff;
 using Undo = LabelCorrection::Undo;
 
+constexpr std::uint32_t kMostGiven = (1U << 31) - 1;  ///< of a class or instance, by us
 constexpr std::uint32_t kMostNumber = 1U << 30;  ///< of a class or instance, from outside: some are left to be given
 constexpr const char* kNoTitle = "a class's name is 1 to 80 bytes of printable text without slashes";
 
@@ -36,6 +37,10 @@ Result<Labels::What> Labels::check(const LabelRequest& request, const std::vecto
     case LabelRequest::Op::kDelete:  // an edit, not a label correction
     case LabelRequest::Op::kUndo:
     case LabelRequest::Op::kRedo: break;
+  }
+  if (const auto it = by_id_.find(request.correction_id); it != by_id_.end()) {
+    const std::string& edit = steps_[it->second].claim.edit_id;
+    if (!edit.empty()) return refuse(Code::kBadRequest, "it came with an edit, as one thing: undo or redo " + edit);
   }
   return check_undo(request);
 }
@@ -202,7 +207,7 @@ struct Labels::Follow {
   }
 
   static Result<void> is_number(std::uint32_t number) {
-    if (number >= 1 && number <= kMostNumber) return {};
+    if (number >= 1 && number <= kMostGiven) return {};
     return refuse(Code::kBadRequest, "numbers of classes and instances count from 1");
   }
   static Result<void> check(const LabelAnchor& anchor) {

@@ -75,11 +75,17 @@ LabelInstance LabelView::summary(InstanceId of, const std::vector<VoxelIndex>& v
 }
 
 std::map<InstanceId, std::vector<VoxelIndex>> LabelView::by_instance(ClassId label) const {
+  return by_instance([label](ClassId of) { return label == 0 || of == label; });
+}
+
+std::map<InstanceId, std::vector<VoxelIndex>> LabelView::by_instance(const std::function<bool(ClassId)>& wanted) const {
+  std::vector<bool> is_wanted;
+  for (const InstanceId& of : by_slot_) is_wanted.push_back(wanted(of.label));
   std::map<InstanceId, std::vector<VoxelIndex>> out;
   for (const BrickIndex index : shown_.sorted_bricks()) {
     shown_.find(index)->for_each([&](int local, LogOdds value) {
-      const InstanceId of = by_slot_[static_cast<std::size_t>(slot_of_value(value))];
-      if (label == 0 || of.label == label) out[of].push_back(voxel_at(index, local));
+      const auto slot = static_cast<std::size_t>(slot_of_value(value));
+      if (is_wanted[slot]) out[by_slot_[slot]].push_back(voxel_at(index, local));
     });
   }
   return out;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <vector>
 
@@ -29,6 +30,9 @@ class LabelView {
   [[nodiscard]] std::vector<VoxelIndex> voxels_of(InstanceId of) const;
   /// What shows of each instance; of all (0), or of one class's.
   [[nodiscard]] std::map<InstanceId, std::vector<VoxelIndex>> by_instance(ClassId label) const;
+  /// Of all classes for which this holds.
+  [[nodiscard]] std::map<InstanceId, std::vector<VoxelIndex>> by_instance(
+      const std::function<bool(ClassId)>& wanted) const;
   /// How it shows; without a voxel if it does not.
   [[nodiscard]] LabelInstance instance(InstanceId of) const;
 

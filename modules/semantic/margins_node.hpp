@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "bus/list_stream.hpp"
 #include "bus/process.hpp"
 #include "semantic/label_view.hpp"
@@ -10,15 +12,14 @@ namespace concord {
 /// The planner takes them as it takes people's zones.
 class MarginsNode {
  public:
-  /// Both must outlive this.
-  MarginsNode(const NodeContext& context, const Labels& labels, const LabelView& view);
+  /// Both must outlive this. Nothing is said before `is_whole` once says that all that shows is whole: a robot would be
+  /// let through where a label is still to come.
+  MarginsNode(const NodeContext& context, const Labels& labels, const LabelView& view, std::function<bool()> is_whole);
   MarginsNode(const MarginsNode&) = delete;
   MarginsNode& operator=(const MarginsNode&) = delete;
 
   /// What shows, or what it is called, is another than before.
   void touch() { is_stale_ = true; }
-  /// All that shows is whole: before, nothing is said, or a robot would be let through where a label is still to come.
-  void begin() { begun_ = true; }
 
  private:
   void tell();
@@ -26,6 +27,7 @@ class MarginsNode {
   NodeContext context_;
   const Labels& labels_;
   const LabelView& view_;
+  std::function<bool()> is_whole_;
   ListSender<Zone> list_;
   bool is_stale_ = true;
   bool begun_ = false;

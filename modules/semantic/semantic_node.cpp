@@ -71,7 +71,8 @@ SemanticNode::SemanticNode(const NodeContext& context)
                        {labels_, map_, assets_node_, [this](const WorkFrame& frame) { return T_map_frame(frame); }}),
       files_node_(context, {labels_, [this](const auto& visit) { return store_.for_each(visit); },
                             [this](const std::vector<LabelCorrection>& all) { return commit(all); }}),
-      margins_node_(context, labels_, view_) {
+      margins_node_(context, labels_, view_,
+                    [this] { return begun_ && (labels_.injected().empty() || assets_node_.is_up_to_date()); }) {
   restore();
   listen_to_the_map();
   Bus& bus = context_.bus;
@@ -85,7 +86,6 @@ SemanticNode::SemanticNode(const NodeContext& context)
     if (begun_ || !map_receiver_.synced()) return;
     begun_ = true;  // what shows is whole: before, a restart would look like labels that went
     label_stream_.begin("map");
-    margins_node_.begin();
   });
   bus.every(kSlotPeriod, [this] { tell_slots(); });
   bus.every(kCountPeriod, [this] {
@@ -293,6 +293,7 @@ void SemanticNode::refresh(const BrickSet& touched) {
     for (std::uint64_t bits = bricks; bits != 0; bits &= bits - 1) {
       const BrickIndex index = brick_at(tile, std::countr_zero(bits));
       if (!view_.refresh(index)) continue;
+      margins_node_.touch();
       if (begun_) label_stream_.touch(index);
     }
   }

@@ -88,6 +88,53 @@ TEST_F(AssetsNodeTest, UndoingItsEditUndoesItWholeAndRedoBringsItBack) {
   EXPECT_EQ(seen_at(25), "box 1");
 }
 
+TEST_F(AssetsNodeTest, RobotsKeepAwayFromItWhereverItIsAndAfterARestartToo) {
+  site_.classes = {{"box", {.margin = 0.5}}};
+  std::unique_ptr<ListReceiver<Zone>> zones;
+  const auto begin_anew = [&] {
+    zones.reset();
+    start();
+    zones = std::make_unique<ListReceiver<Zone>>(*bus_, counters_, "out/label_zones", [](const auto&) {});
+    run();
+  };
+  const auto near = [&](double x) {
+    return std::ranges::any_of(zones->items(), [&](const Zone& zone) {
+      return contains(zone.volume, zone.T_map_zone, {x, 0.5, 0.5});
+    });
+  };
+  begin_anew();
+  ASSERT_TRUE(inject("a1", "cube", 2.0).ok);
+  run();
+  EXPECT_TRUE(near(1.7));
+  begin_anew();
+  EXPECT_TRUE(near(1.7)) << "after a restart";
+  ASSERT_TRUE(undo_edit("u1", "asset-a1").ok);
+  EXPECT_FALSE(near(1.7)) << "it is not there any more";
+  ASSERT_TRUE(undo_edit("u2", "asset-a1", true).ok);
+  EXPECT_TRUE(near(1.7));
+  ASSERT_TRUE(move("m1", "a1", 5.0).ok);
+  run();
+  EXPECT_TRUE(near(4.7));
+  EXPECT_FALSE(near(1.7));
+  zones.reset();
+}
+
+TEST_F(AssetsNodeTest, ItsLabelIsNotUndoneAlone) {
+  ASSERT_TRUE(inject("a1", "cube", 2.0).ok);
+  run();
+  LabelRequest undo;
+  undo.id = "u1";
+  undo.author = "eva";
+  undo.op = LabelRequest::Op::kUndo;
+  undo.correction_id = "a1";
+  undo.utime = bus_->now();
+  const Answer refused = ask("in/label", encode(undo));
+  EXPECT_EQ(refused.code, "BAD_REQUEST");
+  EXPECT_NE(refused.message.find("asset-a1"), std::string::npos) << refused.message;
+  EXPECT_EQ(seen_at(25), "box 1");
+  EXPECT_TRUE(take_out("d1", "a1").ok);
+}
+
 TEST_F(AssetsNodeTest, AModelIsMovedAsOneThingAndKeepsItsName) {
   ASSERT_TRUE(inject("a1", "cube", 2.0).ok);
   const Answer answer = move("m1", "a1", 5.0);
