@@ -11,9 +11,9 @@
 #include "cli/report.hpp"
 #include "cli/semantic_commands.hpp"
 #include "cli/table.hpp"
-#include "semantic/asset_folder.hpp"
-#include "semantic/find_model.hpp"
-#include "semantic/model_file.hpp"
+#include "semantic/assets/asset_folder.hpp"
+#include "semantic/detections/find_model.hpp"
+#include "semantic/models/model_file.hpp"
 
 namespace concord {
 namespace {

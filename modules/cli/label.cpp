@@ -10,7 +10,7 @@
 #include "cli/report.hpp"
 #include "cli/selection_options.hpp"
 #include "cli/semantic_commands.hpp"
-#include "semantic/segment.hpp"
+#include "semantic/segmentation/segment.hpp"
 
 namespace concord {
 namespace {

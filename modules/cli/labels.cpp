@@ -11,7 +11,7 @@
 #include "cli/report.hpp"
 #include "cli/semantic_commands.hpp"
 #include "core/voxel_boxes.hpp"
-#include "semantic/semantic_cloud.hpp"
+#include "semantic/labels/semantic_cloud.hpp"
 #include "store/whole_file.hpp"
 
 namespace concord {

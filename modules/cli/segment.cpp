@@ -9,9 +9,9 @@
 #include "cli/semantic_commands.hpp"
 #include "cli/voxel_box.hpp"
 #include "core/octomap_format.hpp"
-#include "semantic/model_file.hpp"
-#include "semantic/segment.hpp"
-#include "semantic/solid_voxels.hpp"
+#include "semantic/models/model_file.hpp"
+#include "semantic/models/solid_voxels.hpp"
+#include "semantic/segmentation/segment.hpp"
 
 namespace concord {
 namespace {

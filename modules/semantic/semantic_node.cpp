@@ -7,8 +7,8 @@
 #include <spdlog/spdlog.h>
 
 #include "bus/recent_answers.hpp"
-#include "semantic/anchor.hpp"
-#include "semantic/segment.hpp"
+#include "semantic/labels/anchor.hpp"
+#include "semantic/segmentation/segment.hpp"
 
 namespace concord {
 namespace {

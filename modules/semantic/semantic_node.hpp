@@ -10,12 +10,12 @@
 #include "bus/process.hpp"
 #include "bus/replies.hpp"
 #include "bus/reply_queue.hpp"
-#include "semantic/assets_node.hpp"
-#include "semantic/detections_node.hpp"
-#include "semantic/label_files_node.hpp"
-#include "semantic/label_view.hpp"
-#include "semantic/labels.hpp"
-#include "semantic/margins_node.hpp"
+#include "semantic/assets/assets_node.hpp"
+#include "semantic/detections/detections_node.hpp"
+#include "semantic/labels/label_files_node.hpp"
+#include "semantic/labels/label_view.hpp"
+#include "semantic/labels/labels.hpp"
+#include "semantic/labels/margins_node.hpp"
 #include "semantic/semantic_store.hpp"
 
 namespace concord {

@@ -4,7 +4,7 @@
 
 #include "bus/site.hpp"
 #include "core/map_archive_fields.hpp"
-#include "semantic/label_section.hpp"
+#include "semantic/labels/label_section.hpp"
 #include "semantic/semantic_schema.hpp"
 #include "store/site_resolution.hpp"
 

@@ -8,7 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "semantic/label_view.hpp"
+#include "semantic/labels/label_view.hpp"
 #include "semantic/semantic_store.hpp"
 
 namespace concord::bench {

@@ -11,10 +11,10 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "semantic/model_file.hpp"
-#include "semantic/room_planes.hpp"
-#include "semantic/segment.hpp"
-#include "semantic/solid_voxels.hpp"
+#include "semantic/models/model_file.hpp"
+#include "semantic/models/solid_voxels.hpp"
+#include "semantic/segmentation/room_planes.hpp"
+#include "semantic/segmentation/segment.hpp"
 
 namespace concord::bench {
 namespace {

@@ -11,8 +11,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "semantic/model_file.hpp"
-#include "semantic/solid_voxels.hpp"
+#include "semantic/models/model_file.hpp"
+#include "semantic/models/solid_voxels.hpp"
 
 namespace concord::bench {
 namespace {

@@ -1,6 +1,6 @@
 #include "must.hpp"
-#include "semantic/label_loading.hpp"
-#include "semantic/label_section.hpp"
+#include "semantic/labels/label_loading.hpp"
+#include "semantic/labels/label_section.hpp"
 
 using namespace concord;
 

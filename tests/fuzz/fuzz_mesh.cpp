@@ -1,5 +1,5 @@
 #include "must.hpp"
-#include "semantic/solid_voxels.hpp"
+#include "semantic/models/solid_voxels.hpp"
 
 using namespace concord;
 

@@ -1,5 +1,5 @@
 #include "must.hpp"
-#include "semantic/semantic_cloud.hpp"
+#include "semantic/labels/semantic_cloud.hpp"
 
 using namespace concord;
 

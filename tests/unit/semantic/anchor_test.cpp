@@ -1,10 +1,10 @@
-#include "semantic/anchor.hpp"
+#include "semantic/labels/anchor.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "core/compose.hpp"
-#include "semantic/label_view.hpp"
+#include "semantic/labels/label_view.hpp"
 
 namespace concord {
 namespace {

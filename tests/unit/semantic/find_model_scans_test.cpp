@@ -5,8 +5,8 @@
 
 #include "core/ray.hpp"
 #include "sample_meshes.hpp"
-#include "semantic/find_model.hpp"
-#include "semantic/solid_voxels.hpp"
+#include "semantic/detections/find_model.hpp"
+#include "semantic/models/solid_voxels.hpp"
 
 namespace concord {
 namespace {

@@ -1,9 +1,9 @@
-#include "semantic/find_model.hpp"
+#include "semantic/detections/find_model.hpp"
 
 #include <gtest/gtest.h>
 
 #include "sample_meshes.hpp"
-#include "semantic/solid_voxels.hpp"
+#include "semantic/models/solid_voxels.hpp"
 
 namespace concord {
 namespace {

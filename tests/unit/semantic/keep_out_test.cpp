@@ -1,4 +1,4 @@
-#include "semantic/keep_out.hpp"
+#include "semantic/labels/keep_out.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

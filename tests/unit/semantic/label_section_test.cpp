@@ -1,10 +1,10 @@
-#include "semantic/label_section.hpp"
+#include "semantic/labels/label_section.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "core/map_archive.hpp"
-#include "semantic/label_loading.hpp"
+#include "semantic/labels/label_loading.hpp"
 
 namespace concord {
 namespace {

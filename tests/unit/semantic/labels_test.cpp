@@ -1,9 +1,9 @@
-#include "semantic/labels.hpp"
+#include "semantic/labels/labels.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "semantic/label_view.hpp"
+#include "semantic/labels/label_view.hpp"
 
 namespace concord {
 namespace {

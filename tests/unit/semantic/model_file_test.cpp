@@ -1,4 +1,4 @@
-#include "semantic/model_file.hpp"
+#include "semantic/models/model_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "sample_meshes.hpp"
-#include "semantic/gltf.hpp"
+#include "semantic/models/gltf.hpp"
 
 namespace concord {
 namespace {

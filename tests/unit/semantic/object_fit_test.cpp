@@ -1,9 +1,9 @@
-#include "semantic/object_fit.hpp"
+#include "semantic/detections/object_fit.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "semantic/solid_voxels.hpp"
+#include "semantic/models/solid_voxels.hpp"
 
 namespace concord {
 namespace {

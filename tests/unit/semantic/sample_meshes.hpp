@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "semantic/triangle_mesh.hpp"
+#include "semantic/models/triangle_mesh.hpp"
 
 namespace concord {
 

@@ -1,9 +1,9 @@
-#include "semantic/segment.hpp"
+#include "semantic/segmentation/segment.hpp"
 
 #include <gtest/gtest.h>
 
 #include "sample_meshes.hpp"
-#include "semantic/solid_voxels.hpp"
+#include "semantic/models/solid_voxels.hpp"
 
 namespace concord {
 namespace {

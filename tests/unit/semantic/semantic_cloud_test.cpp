@@ -1,4 +1,4 @@
-#include "semantic/semantic_cloud.hpp"
+#include "semantic/labels/semantic_cloud.hpp"
 
 #include <gtest/gtest.h>
 

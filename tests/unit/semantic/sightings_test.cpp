@@ -1,4 +1,4 @@
-#include "semantic/sightings.hpp"
+#include "semantic/detections/sightings.hpp"
 
 #include <gtest/gtest.h>
 

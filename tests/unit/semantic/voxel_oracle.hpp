@@ -3,7 +3,7 @@
 #include <optional>
 #include <set>
 
-#include "semantic/snapped_mesh.hpp"
+#include "semantic/models/snapped_mesh.hpp"
 
 namespace concord {
 

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "sample_meshes.hpp"
-#include "semantic/solid_voxels.hpp"
-#include "semantic/triangle_voxels.hpp"
+#include "semantic/models/solid_voxels.hpp"
+#include "semantic/models/triangle_voxels.hpp"
 #include "voxel_oracle.hpp"
 
 namespace concord {
