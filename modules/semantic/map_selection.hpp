@@ -8,7 +8,6 @@
 #include "core/corrections.hpp"
 #include "core/error.hpp"
 #include "core/requests.hpp"
-#include "core/requests.hpp"
 
 namespace concord {
 
