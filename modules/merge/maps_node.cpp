@@ -13,13 +13,20 @@ namespace {
 /// Long after a client that waits for layers would have asked again.
 constexpr std::int64_t kKeepOpened = 60'000'000;
 constexpr std::int64_t kForgetPeriod = 10'000'000;
-/// Of a process that says its status each second: longer, and it does not run.
+/// Of a process that says its status each second: longer, and it is busy, or does not run.
 constexpr std::int64_t kSilence = 3'500'000;
+/// Longer, and it does not run. Between the two a map would be saved without labels that somebody keeps.
+constexpr std::int64_t kGone = 90'000'000;
 
 }  // namespace
 
 MapsNode::MapsNode(const NodeContext& context, const Parts& parts)
-    : context_(context), parts_(parts), replies_(context), maps_(context.site.state / "maps"), answers_(context.bus) {
+    : context_(context),
+      parts_(parts),
+      replies_(context),
+      maps_(context.site.state / "maps"),
+      answers_(context.bus),
+      start_(context.bus.now()) {
   listen<MapRequest>(context_.bus, context_.counters, context_.process, kRequests,
                      [this](const std::string&, const MapRequest& request) {
                        switch (request.op) {
@@ -39,15 +46,17 @@ void MapsNode::save(const MapRequest& request) {
   const std::uint64_t content = content_of(request);
   if (answers_.repeat(request.id, context_.process, content, request.utime)) return;
   if (parts_.people_node.repeat(kRequests, request.id, content)) return;
-  const auto bytes = write(request);
+  const auto labels = labels_for(request);
+  const auto bytes =
+      labels.and_then([&](const std::optional<Bytes>& all) { return write(request, all.value_or(Bytes())); });
   if (!bytes) return answers_.give(replies_.denied(kRequests, request.id, bytes.error()), content, request.utime);
   std::string words = "saved " + request.map + "." + request.format;
-  if (request.format == kNative && !semantic_runs()) words += ", without labels: semantic does not run";
+  if (request.format == kNative && !*labels) words += ", without labels: semantic does not run";
   answers_.give(replies_.granted(request.id, parts_.map.revision(), *bytes, words), content);
 }
 
 /// Returns the bytes written.
-Result<std::int64_t> MapsNode::write(const MapRequest& request) {
+Result<std::int64_t> MapsNode::write(const MapRequest& request, const Bytes& labels) {
   parts_.map.refold_and_send();
   if (!parts_.map.begun()) {
     return refuse(Code::kBusy, "the map is not whole again after a restart; ask again in some seconds");
@@ -58,31 +67,37 @@ Result<std::int64_t> MapsNode::write(const MapRequest& request) {
   if (const auto may = maps_.check(request.map, request.format, request.overwrite); !may) {
     return tl::unexpected(may.error());
   }
-  const auto bytes = encoded(request);
+  const auto bytes = encoded(request, labels);
   if (!bytes) return tl::unexpected(bytes.error());
   if (const auto saved = maps_.save(*bytes, request.map, request.format); !saved) return tl::unexpected(saved.error());
   return static_cast<std::int64_t>(bytes->size());
 }
 
-Result<Bytes> MapsNode::encoded(const MapRequest& request) {
-  if (request.format == kNative) return archived(request.id);
+Result<Bytes> MapsNode::encoded(const MapRequest& request, const Bytes& labels) {
+  if (request.format == kNative) return archived(labels);
   return write_octomap_file(parts_.map.layers().map(), context_.site.resolution,
                             request.format == "ot" ? OctomapFormat::kFull : OctomapFormat::kBinary);
 }
 
-bool MapsNode::semantic_runs() const { return semantic_heard_ && context_.bus.now() - *semantic_heard_ <= kSilence; }
-
-/// Semantic lays them there for each such request that it hears, and hears it when we do.
-Result<Bytes> MapsNode::labels_for(const std::string& request_id) const {
-  if (!semantic_runs()) return Bytes();
-  auto labels = read_whole_file(handover_file(context_.site.state, request_id), kMaxArchiveBytes);
-  if (labels || labels.error().code != Code::kNotFound) return labels;
+/// Nothing: another format, or semantic does not run. It lays them there for each such request that it hears, and hears
+/// it when we do.
+Result<std::optional<Bytes>> MapsNode::labels_for(const MapRequest& request) const {
+  if (request.format != kNative) return std::nullopt;
+  const std::int64_t silent = context_.bus.now() - semantic_heard_.value_or(start_);
+  if (silent > kSilence && (!semantic_heard_ || silent > kGone)) return std::nullopt;
+  if (silent > kSilence) {
+    return refuse(Code::kBusy, "semantic, which keeps the labels, has said nothing for " +
+                                   std::to_string(silent / 1'000'000) +
+                                   " s; ask again (without a word of it for 90 s the map is saved without labels)");
+  }
+  if (!semantic_heard_) return refuse(Code::kBusy, "merge has just begun; ask again in some seconds");
+  auto labels = read_whole_file(handover_file(context_.site.state, request.id), kMaxArchiveBytes);
+  if (labels) return std::optional(std::move(*labels));
+  if (labels.error().code != Code::kNotFound) return tl::unexpected(labels.error());
   return refuse(Code::kBusy, "the labels are being handed over; ask again");
 }
 
-Result<Bytes> MapsNode::archived(const std::string& request_id) {
-  const auto labels = labels_for(request_id);
-  if (!labels) return tl::unexpected(labels.error());
+Result<Bytes> MapsNode::archived(const Bytes& labels) {
   MapArchiveWriter writer(context_.site.resolution);
   for (const auto& [id, layer] : parts_.map.layers().layers()) {
     const LayerHead head{id, context_.site.agent(id).kind, layer.frame_id, parts_.agents.incarnation(id), layer.weight};
@@ -90,7 +105,7 @@ Result<Bytes> MapsNode::archived(const std::string& request_id) {
   }
   const auto read = parts_.store.for_each([&](const Correction& correction) { return writer.add(correction); });
   if (!read) return tl::unexpected(read.error());
-  if (!labels->empty()) writer.add_labels(*labels);
+  if (!labels.empty()) writer.add_labels(labels);
   return std::move(writer).finish();
 }
 

@@ -39,11 +39,10 @@ class MapsNode {
   void list(const MapRequest& request);
   void load(const MapRequest& request);
 
-  [[nodiscard]] Result<std::int64_t> write(const MapRequest& request);
-  [[nodiscard]] Result<Bytes> encoded(const MapRequest& request);
-  [[nodiscard]] Result<Bytes> archived(const std::string& request_id);
-  [[nodiscard]] bool semantic_runs() const;
-  [[nodiscard]] Result<Bytes> labels_for(const std::string& request_id) const;
+  [[nodiscard]] Result<std::optional<Bytes>> labels_for(const MapRequest& request) const;
+  [[nodiscard]] Result<std::int64_t> write(const MapRequest& request, const Bytes& labels);
+  [[nodiscard]] Result<Bytes> encoded(const MapRequest& request, const Bytes& labels);
+  [[nodiscard]] Result<Bytes> archived(const Bytes& labels);
 
   /// A native file that is being loaded, between its request and the arrival of its layers: it is read once.
   struct Opened {
@@ -73,6 +72,7 @@ class MapsNode {
   Replies replies_;
   MapStore maps_;
   RecentAnswers answers_;
+  std::int64_t start_;
   std::optional<std::int64_t> semantic_heard_;  ///< when, last
   std::optional<Opened> opened_;
 };

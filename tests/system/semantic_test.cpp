@@ -1,13 +1,15 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <random>
 
 #include <nlohmann/json.hpp>
 
+#include "bus/messages_detection.hpp"
 #include "noise.hpp"
 #include "stack_fixture.hpp"
 
-// Labels, assets and things through the real processes, which are killed between any two steps.
+// Labels, assets and things through the real processes, which are killed between two steps and within them.
 
 namespace concord::test {
 namespace {
@@ -93,6 +95,102 @@ TEST_F(SemanticSystemTest, an_asset_is_injected_moved_and_taken_out_across_kills
   EXPECT_EQ(box_at("6.5 3.5 0.5")[0]["instance"], 1);
   concord("asset delete c1");
   EXPECT_TRUE(happens([&] { return box_at("6.5 3.5 0.5").empty() && box_at("3.5 3.5 0.5").empty(); }));
+}
+
+/// Each request is asked by the client again and again until it is answered, while what does it is killed at a moment
+/// that nobody chose.
+class SemanticKillsTest : public SemanticSystemTest {
+ protected:
+  void ask_and_kill(const std::string& victim, const std::vector<std::string>& arguments) {
+    std::vector<std::string> all{"--json", "--timeout", "60"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    Process asker = stack_->start_concord(*person_, all);
+    const std::int64_t until = ear_->bus().now() + std::uniform_int_distribution<std::int64_t>(0, 120'000)(random_);
+    while (ear_->bus().now() < until) ear_->bus().spin_once(5);
+    restart(victim);
+    EXPECT_EQ(asker.wait(), 0) << arguments[0] << " " << arguments[1] << ", " << victim << " killed";
+  }
+  /// How many of each class there are, whole.
+  [[nodiscard]] std::map<std::string, int> counted() const {
+    std::map<std::string, int> out;
+    const nlohmann::json labels = concord("labels");
+    for (const auto& one : labels["instances"]) {
+      if (one["voxels"] == 21 * 21 * 21) ++out[one["class"]];
+    }
+    return out;
+  }
+  [[nodiscard]] bool is_at(double x, double y) const {
+    const std::string place = std::to_string(x + 0.5) + " " + std::to_string(y + 0.5) + " 0.5";
+    return concord("labels --at \"" + place + "\"")["instances"].size() == 1;
+  }
+  static std::string at(double x, double y) { return std::to_string(x) + " " + std::to_string(y) + " 0 0 0 0 1"; }
+
+  std::mt19937 random_{7};
+};
+
+TEST_F(SemanticKillsTest, assets_are_each_in_one_place_whoever_is_killed_meanwhile) {
+  ASSERT_NO_FATAL_FAILURE(place_a_robot());
+  const auto victim = [](int i) { return std::string(i % 2 == 0 ? "semantic" : "merge"); };
+  for (int i = 0; i < 4; ++i) {
+    ask_and_kill(victim(i),
+                 {"asset", "inject", "crate", "--transform", at(3 + 2 * i, 5), "--id", "c" + std::to_string(i)});
+  }
+  EXPECT_TRUE(happens([&] { return counted()["box"] == 4; })) << concord("labels");
+  for (int i = 0; i < 4; ++i) {
+    const std::string n = std::to_string(i);
+    ask_and_kill(victim(i), {"asset", "move", "c" + n, "--transform", at(3 + 2 * i, 9), "--id", "m" + n});
+  }
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_TRUE(happens([&] { return is_at(3 + 2 * i, 9) && !is_at(3 + 2 * i, 5); })) << i;
+  }
+  EXPECT_EQ(counted()["box"], 4);
+  for (int i = 0; i < 2; ++i) {
+    const std::string n = std::to_string(i);
+    ask_and_kill(victim(i), {"asset", "delete", "c" + n, "--id", "d" + n});
+  }
+  ask_and_kill("semantic", {"label", "delete", "box", "3", "--id", "d3"});
+  EXPECT_TRUE(happens([&] { return counted()["box"] == 1 && is_at(9, 9); })) << concord("labels");
+}
+
+TEST_F(SemanticKillsTest, a_thing_is_injected_once_whoever_is_killed_meanwhile) {
+  ASSERT_NO_FATAL_FAILURE(place_a_robot());
+  for (int i = 0; i < 3; ++i) {
+    Transform T = Transform::Identity();
+    T.translation() = Eigen::Vector3d(3 + 3 * i, 5, 0);
+    const auto see = [&] {
+      static int sightings = 0;
+      const Detection seen{"s" + std::to_string(++sightings), "hmd", "crate", "", 0.9, T, {}, ear_->bus().now()};
+      ear_->bus().publish("in/detection", encode(seen));
+    };
+    nlohmann::json things;
+    ASSERT_TRUE(happens([&] {
+      see();
+      things = concord("things")["things"];
+      return things.size() == static_cast<std::size_t>(i) + 1 && things.back()["injection"] == "";
+    })) << things;
+    ask_and_kill("merge", {"things", "confirm", std::to_string(things.back()["thing"].get<int>()), "--id",
+                           "k" + std::to_string(i)});
+  }
+  EXPECT_TRUE(happens([&] { return counted()["box"] == 3; })) << concord("labels");
+}
+
+TEST_F(SemanticKillsTest, a_map_is_saved_with_its_labels_and_loaded_whoever_is_killed_meanwhile) {
+  ASSERT_NO_FATAL_FAILURE(place_a_robot());
+  concord("asset inject crate --transform \"" + at(3, 5) + "\" --id c1");
+  ask_and_kill("semantic", {"label", "add", "shelf", "--box", "0.01 0.01 0.01 0.79 0.79 0.79", "--id", "l1"});
+  ask_and_kill("merge", {"label", "rename", "shelf", "--as", "rack", "--id", "l2"});
+  const auto labels = concord("labels");
+  ASSERT_EQ(labels["instances"].size(), 2U) << labels;
+  ask_and_kill("semantic", {"save", "hall", "--format", "concord"});
+  concord("remove robot1");
+  ASSERT_TRUE(happens([&] { return agents_.empty(); }));
+  stack_->kill("semantic");
+  for (const char* part : {".db", ".db-wal", ".db-shm"}) {
+    std::filesystem::remove(stack_->folder() / "state" / (std::string("semantic") + part));
+  }
+  stack_->start("semantic");
+  ask_and_kill("semantic", {"load", "hall"});
+  EXPECT_TRUE(shows(labels)) << concord("labels");
 }
 
 }  // namespace

@@ -266,5 +266,27 @@ TEST_F(NativeMapTest, OtherFormatsAreIngestsToLoad) {
   EXPECT_TRUE(ask("in/map_request", encode(other, bus_->now())).id.empty());
 }
 
+TEST_F(NativeMapTest, IsNotSavedWithoutLabelsWhileSemanticIsMerelyBusy) {
+  start();
+  send_wall();
+  ASSERT_TRUE(place("t1", somewhere()).ok);
+  const auto semantic_speaks = [&] {
+    bus_->publish("out/status/semantic", encode(ProcessStatus{bus_->now(), "semantic", 1, {}}));
+    bus_->deliver();
+  };
+  semantic_speaks();
+  bus_->advance_to(bus_->now() + 20'000'000);
+  const Answer busy = ask_map("s1", MapRequest::Op::kSave);
+  EXPECT_EQ(busy.code, "BUSY");
+  EXPECT_NE(busy.message.find("20 s"), std::string::npos) << busy.message;
+  semantic_speaks();
+  bus_->advance_to(bus_->now() + 60'000'000);
+  EXPECT_EQ(ask_map("s2", MapRequest::Op::kSave).code, "BUSY");
+  bus_->advance_to(bus_->now() + 31'000'000);
+  const Answer saved = ask_map("s3", MapRequest::Op::kSave);
+  EXPECT_TRUE(saved.ok);
+  EXPECT_NE(saved.message.find("without labels"), std::string::npos) << saved.message;
+}
+
 }  // namespace
 }  // namespace concord
