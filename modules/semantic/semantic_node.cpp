@@ -16,6 +16,7 @@ namespace {
 const std::string kRequests = "in/label";
 const std::string kQueries = "in/label_query";
 constexpr std::int64_t kTick = 50'000;         ///< changes of the map are gathered for so long, microseconds
+constexpr std::int64_t kLaidAtOnce = 20'000;   ///< voxels of labels whose agent was realigned, in a tick
 constexpr std::int64_t kSlotPeriod = 200'000;  ///< the list of slots is told at most so often
 constexpr std::int64_t kCountPeriod = 1'000'000;
 
@@ -89,6 +90,7 @@ SemanticNode::SemanticNode(const NodeContext& context, std::launch how)
   listen<LabelQuery>(bus, context_.counters, context_.process, kQueries,
                      [this](const std::string&, const LabelQuery& query) { on_query(query); });
   bus.every(kTick, [this] {
+    (void)labels_.lay_some(kLaidAtOnce, dirty_);  // the rest at the next tick
     refresh(dirty_);
     dirty_.clear();
     if (begun_ || !map_receiver_.synced()) return;
@@ -117,7 +119,6 @@ void SemanticNode::listen_to_the_map() {
 /// A label goes along with the agent that it lies on. Where that was last is kept: it may be gone when we start again.
 void SemanticNode::on_agents(const AgentList& list) {
   selection_.follow(list.agents);
-  BrickSet touched;
   for (const AgentState& agent : list.agents) {
     const LabelAnchor now{agent.id, agent.frame_id, agent.T_map_agent};
     if (!agent.aligned || !labels_.is_news(now)) continue;
@@ -125,9 +126,8 @@ void SemanticNode::on_agents(const AgentList& list) {
       context_.counters.refused("out/agents", kept.error());
       continue;
     }
-    labels_.place(now, touched);
+    labels_.place(now);
   }
-  refresh(touched);
 }
 
 void SemanticNode::restore() {
@@ -139,7 +139,9 @@ void SemanticNode::restore() {
   if (!done) throw std::runtime_error(done.error().message);
   const auto placements = store_.placements();
   if (!placements) throw std::runtime_error(placements.error().message);
-  for (const LabelAnchor& placed : *placements) labels_.place(placed, touched);
+  for (const LabelAnchor& placed : *placements) labels_.place(placed);
+  while (labels_.lay_some(kLaidAtOnce, touched)) {
+  }
   spdlog::info("restored labels up to revision {}", labels_.revision());
 }
 

@@ -27,6 +27,10 @@ std::string words(InstanceId of) {
 }  // namespace
 
 Result<Labels::What> Labels::check(const LabelRequest& request, const std::vector<VoxelIndex>& voxels) const {
+  if (made_.size() >= kMaxLabelCorrections) {
+    return refuse(Code::kTooLarge, "no more is kept than " + std::to_string(kMaxLabelCorrections) +
+                                       " label requests; save the labels as .pcd and begin with a new state folder");
+  }
   switch (request.op) {
     case LabelRequest::Op::kLabel:
     case LabelRequest::Op::kTouch:
@@ -58,6 +62,7 @@ Result<void> Labels::check_voxels(const std::vector<VoxelIndex>& voxels) const {
   if (many == 0) return refuse(Code::kEmpty, "nothing is occupied there");
   if (many > kMaxLabelVoxels) return refuse_too_many(kMaxLabelVoxels);
   if (many > kMaxAllLabelVoxels - voxels_) return refuse_too_many(kMaxAllLabelVoxels);
+  if (many > kMaxLabelVoxelsEver - voxels_ever_) return refuse_too_many(kMaxLabelVoxelsEver);
   if (!std::ranges::all_of(voxels, [](VoxelIndex v) { return in_bounds(v); })) {
     return refuse(Code::kOutOfBounds, "a voxel lies beyond the map's bounds");
   }
@@ -149,6 +154,9 @@ Result<Labels::What> Labels::check_undo(const LabelRequest& request) const {
     return refuse(Code::kBadRequest, "an undo is not undone; redo what it undid");
   if (step.active == redo) {
     return refuse(Code::kConflict, request.correction_id + (redo ? " is not undone" : " is undone already"));
+  }
+  if (redo && step.is_claim && made_[it->second].count > kMaxAllLabelVoxels - voxels_) {
+    return refuse_too_many(kMaxAllLabelVoxels);
   }
   if (std::holds_alternative<Rename>(step.what)) {
     std::vector<std::string> names;

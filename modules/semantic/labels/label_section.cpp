@@ -159,8 +159,8 @@ Result<std::vector<LabelCorrection>> read_label_section(ByteSpan section) {
   Labels labels(1.0);  // of any resolution: what may follow on what does not hang on where it lies
   BrickSet touched;
   while (!section.empty()) {
-    if (out.size() == kMaxLabelCorrections) {
-      return refuse(Code::kTooLarge, "over " + std::to_string(kMaxLabelCorrections) + " label corrections in one file");
+    if (out.size() == kMaxReadCorrections) {
+      return refuse(Code::kTooLarge, "over " + std::to_string(kMaxReadCorrections) + " label corrections in one file");
     }
     auto next = read_label_correction(section);
     if (!next) return tl::unexpected(next.error());

@@ -17,10 +17,11 @@ void append_label_correction(Bytes& out, const LabelCorrection& correction);
 /// `most` voxels (kTooLarge).
 [[nodiscard]] Result<LabelCorrection> read_label_correction(ByteSpan& in, std::int64_t most = kMaxLabelVoxels);
 
-inline constexpr std::size_t kMaxLabelCorrections = 1'000'000;  ///< of one file
+/// Of one file: what people made, and what was taken back of that because merge refused it.
+inline constexpr std::size_t kMaxReadCorrections = 2 * kMaxLabelCorrections;
 
 /// A whole section: corrections that may follow one another (Labels::follows). Refused also: over
-/// kMaxLabelCorrections or the caps of Labels (kTooLarge), before memory is taken for more.
+/// kMaxReadCorrections or the caps of Labels (kTooLarge), before memory is taken for more.
 [[nodiscard]] Result<std::vector<LabelCorrection>> read_label_section(ByteSpan section);
 
 }  // namespace concord

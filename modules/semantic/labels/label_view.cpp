@@ -2,8 +2,15 @@
 
 #include <algorithm>
 #include <bit>
+#include <set>
 
 namespace concord {
+namespace {
+
+constexpr std::size_t kFew = 100;  ///< instances that are looked up one by one
+
+}  // namespace
+
 bool LabelView::refresh(BrickIndex index) {
   DenseBrick dense;
   dense.fill(kUnknown);
@@ -75,12 +82,13 @@ LabelInstance LabelView::summary(InstanceId of, const std::vector<VoxelIndex>& v
 }
 
 std::map<InstanceId, std::vector<VoxelIndex>> LabelView::by_instance(ClassId label) const {
-  return by_instance([label](ClassId of) { return label == 0 || of == label; });
+  return by_instance([label](InstanceId of) { return label == 0 || of.label == label; });
 }
 
-std::map<InstanceId, std::vector<VoxelIndex>> LabelView::by_instance(const std::function<bool(ClassId)>& wanted) const {
+std::map<InstanceId, std::vector<VoxelIndex>> LabelView::by_instance(
+    const std::function<bool(InstanceId)>& wanted) const {
   std::vector<bool> is_wanted;
-  for (const InstanceId& of : by_slot_) is_wanted.push_back(wanted(of.label));
+  for (const InstanceId& of : by_slot_) is_wanted.push_back(wanted(of));
   std::map<InstanceId, std::vector<VoxelIndex>> out;
   for (const BrickIndex index : shown_.sorted_bricks()) {
     shown_.find(index)->for_each([&](int local, LogOdds value) {
@@ -107,22 +115,38 @@ std::vector<VoxelIndex> LabelView::border_of(const std::vector<VoxelIndex>& voxe
 std::vector<LabelInstance> LabelView::within(const LabelQuery& query) const {
   const VoxelIndex low = voxel_of(query.p_map.array() - query.radius, resolution_);
   const VoxelIndex high = voxel_of(query.p_map.array() + query.radius, resolution_);
-  std::map<InstanceId, bool> near;
+  std::set<InstanceId> near;
   for (const BrickIndex index : shown_.sorted_bricks()) {
     const VoxelIndex first = origin_of(index);
     const auto apart = [](std::int32_t from, std::int32_t a, std::int32_t b) { return from + 7 < a || from > b; };
     if (apart(first.x, low.x, high.x) || apart(first.y, low.y, high.y) || apart(first.z, low.z, high.z)) continue;
     shown_.find(index)->for_each([&](int local, LogOdds value) {
       const double away = (centre_of(voxel_at(index, local), resolution_) - query.p_map).norm();
-      if (away <= query.radius) near[by_slot_[static_cast<std::size_t>(slot_of_value(value))]] = true;
+      if (away <= query.radius) near.insert(by_slot_[static_cast<std::size_t>(slot_of_value(value))]);
     });
   }
   std::vector<LabelInstance> out;
-  for (const auto& [of, is_near] : near) out.push_back(instance(of));
+  if (near.size() <= kFew) {
+    for (const InstanceId of : near) out.push_back(instance(of));
+    return out;
+  }
+  for (const auto& [of, voxels] : by_instance([&](InstanceId one) { return near.contains(one); })) {
+    out.push_back(summary(of, voxels));
+  }
   return out;
 }
 
 Result<std::vector<LabelInstance>> LabelView::answer(const LabelQuery& query) const {
+  auto out = found(query);
+  if (!out || out->empty()) return out;
+  const auto assets = labels_.assets();
+  for (LabelInstance& one : *out) {
+    if (const auto it = assets.find(one.of); it != assets.end()) one.asset = it->second;
+  }
+  return out;
+}
+
+Result<std::vector<LabelInstance>> LabelView::found(const LabelQuery& query) const {
   using Kind = LabelQuery::Kind;
   std::vector<LabelInstance> out;
   if (query.kind == Kind::kWithin) return within(query);
@@ -138,10 +162,8 @@ Result<std::vector<LabelInstance>> LabelView::answer(const LabelQuery& query) co
     if (!known) return refuse(Code::kNotFound, "no class " + query.name + "; see: concord labels");
     label = *known;
   }
-  const auto assets = labels_.assets();
   for (const auto& [of, voxels] : by_instance(label)) {
     out.push_back(summary(of, query.kind == Kind::kBorder ? border_of(voxels) : voxels));
-    if (const auto it = assets.find(of); it != assets.end()) out.back().asset = it->second;
   }
   return out;
 }

@@ -30,9 +30,9 @@ class LabelView {
   [[nodiscard]] std::vector<VoxelIndex> voxels_of(InstanceId of) const;
   /// What shows of each instance; of all (0), or of one class's.
   [[nodiscard]] std::map<InstanceId, std::vector<VoxelIndex>> by_instance(ClassId label) const;
-  /// Of all classes for which this holds.
+  /// Of all for which this holds.
   [[nodiscard]] std::map<InstanceId, std::vector<VoxelIndex>> by_instance(
-      const std::function<bool(ClassId)>& wanted) const;
+      const std::function<bool(InstanceId)>& wanted) const;
   /// How it shows; without a voxel if it does not.
   [[nodiscard]] LabelInstance instance(InstanceId of) const;
 
@@ -41,6 +41,7 @@ class LabelView {
 
  private:
   [[nodiscard]] LabelInstance summary(InstanceId of, const std::vector<VoxelIndex>& voxels) const;
+  [[nodiscard]] Result<std::vector<LabelInstance>> found(const LabelQuery& query) const;
   [[nodiscard]] std::vector<LabelInstance> within(const LabelQuery& query) const;
   [[nodiscard]] std::vector<VoxelIndex> border_of(const std::vector<VoxelIndex>& voxels) const;
 

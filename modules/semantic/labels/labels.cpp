@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 #include "semantic/labels/anchor.hpp"
 
@@ -32,6 +33,7 @@ struct Labels::Apply {
     labels.claims_[claim.of].push_back(step);
     if (!claim.edit_id.empty()) labels.by_edit_[claim.edit_id].push_back(step);
     labels.voxels_ += static_cast<std::int64_t>(claim.voxels.size());
+    labels.voxels_ever_ += static_cast<std::int64_t>(claim.voxels.size());
     for (const auto& [index, mask] : kept.bricks) {
       labels.by_brick_[index].push_back(step);
       touched.insert(index);
@@ -51,6 +53,7 @@ struct Labels::Apply {
   void operator()(const Reassign& reassign) const {
     labels.give(reassign.to);
     labels.changes_[reassign.from].push_back(step);
+    labels.sources_[reassign.to].insert(reassign.from);
     labels.touch(reassign.from, touched);
     made.of = reassign.to;
   }
@@ -62,7 +65,9 @@ struct Labels::Apply {
   void operator()(const Undo& undo) const {
     const std::uint32_t subject = labels.by_id_.at(undo.correction_id);
     Step& kept = labels.steps_[subject];
+    if (kept.is_claim && kept.active != undo.redo) labels.voxels_ += (undo.redo ? 1 : -1) * labels.made_[subject].count;
     kept.active = undo.redo;
+    labels.lay_if_astray(subject, touched);
     made.of = labels.made_[subject].of;
     for (const auto& [index, mask] : kept.bricks) touched.insert(index);
     if (const auto* reassign = std::get_if<Reassign>(&kept.what)) labels.touch(reassign->from, touched);
@@ -92,6 +97,7 @@ void Labels::set_edit(const std::string& edit_id, const EditState& state, BrickS
   const auto steps = by_edit_.find(edit_id);
   if (steps == by_edit_.end()) return;
   for (const std::uint32_t step : steps->second) {
+    lay_if_astray(step, touched);
     for (const auto& [index, mask] : steps_[step].bricks) touched.insert(index);
   }
 }
@@ -115,10 +121,40 @@ bool Labels::is_news(const LabelAnchor& where) const {
   return !frame->second.T_map_agent || frame->second.T_map_agent->matrix() != where.T_map_agent.matrix();
 }
 
-void Labels::place(const LabelAnchor& where, BrickSet& touched) {
+void Labels::place(const LabelAnchor& where) {
   Frame& frame = frames_[{where.agent, where.frame_id}];
   frame.T_map_agent = where.T_map_agent;
-  for (const std::uint32_t step : frame.claims) lay(step, where.T_map_agent, touched);
+  for (const std::uint32_t step : frame.claims) {
+    steps_[step].is_astray = true;
+    if (!std::exchange(steps_[step].is_queued, true)) to_lay_.push_back(step);
+  }
+}
+
+/// Whether a claim is not undone, and the edit that it came with, if any, holds.
+bool Labels::holds(std::uint32_t step) const {
+  const Step& kept = steps_[step];
+  if (!kept.active || kept.claim.edit_id.empty()) return kept.active;
+  const auto edit = edits_.find(kept.claim.edit_id);
+  return edit != edits_.end() && edit->second.active;
+}
+
+void Labels::lay_if_astray(std::uint32_t step, BrickSet& touched) {
+  Step& kept = steps_[step];
+  if (!kept.is_astray || !holds(step)) return;
+  kept.is_astray = false;
+  const LabelAnchor& anchor = kept.claim.anchor;
+  lay(step, *frames_.at({anchor.agent, anchor.frame_id}).T_map_agent, touched);
+}
+
+bool Labels::lay_some(std::int64_t voxels, BrickSet& touched) {
+  for (std::int64_t laid = 0; !to_lay_.empty() && laid < voxels;) {
+    const std::uint32_t step = to_lay_.front();
+    to_lay_.pop_front();
+    steps_[step].is_queued = false;
+    if (steps_[step].is_astray && holds(step)) laid += made_[step].count;
+    lay_if_astray(step, touched);
+  }
+  return !to_lay_.empty();
 }
 
 /// Takes a claim from the bricks where it lies, and to where it lies from now on.
@@ -175,11 +211,8 @@ void Labels::touch(InstanceId of, BrickSet& touched) const {
   for (auto it = claims_.lower_bound({of.label, 0}); it != claims_.end() && it->first.label == of.label; ++it) {
     touched.insert(bricks_of(it->first));
   }
-  for (const auto& [from, steps] : changes_) {
-    for (const std::uint32_t step : steps) {
-      const auto* reassign = std::get_if<Reassign>(&steps_[step].what);
-      if (reassign != nullptr && reassign->to.label == of.label) touched.insert(bricks_of(from));
-    }
+  for (auto it = sources_.lower_bound({of.label, 0}); it != sources_.end() && it->first.label == of.label; ++it) {
+    touched.insert(bricks_of(it->first));
   }
 }
 
@@ -187,22 +220,18 @@ BrickSet Labels::bricks_of(InstanceId of) const {
   BrickSet out;
   // What was reassigned to it was claimed for another.
   std::vector<InstanceId> open{of};
-  std::vector<InstanceId> seen;
+  std::set<InstanceId> seen;
   while (!open.empty()) {
     const InstanceId at = open.back();
     open.pop_back();
-    if (std::ranges::find(seen, at) != seen.end()) continue;
-    seen.push_back(at);
+    if (!seen.insert(at).second) continue;
     if (const auto claims = claims_.find(at); claims != claims_.end()) {
       for (const std::uint32_t step : claims->second) {
         for (const auto& [index, mask] : steps_[step].bricks) out.insert(index);
       }
     }
-    for (const auto& [from, steps] : changes_) {
-      for (const std::uint32_t step : steps) {
-        const auto* reassign = std::get_if<Reassign>(&steps_[step].what);
-        if (reassign != nullptr && reassign->to == at) open.push_back(reassign->from);
-      }
+    if (const auto from = sources_.find(at); from != sources_.end()) {
+      open.insert(open.end(), from->second.begin(), from->second.end());
     }
   }
   return out;

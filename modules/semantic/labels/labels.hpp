@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <unordered_map>
 
 #include "core/brick_set.hpp"
@@ -66,9 +67,13 @@ class Labels {
   /// By the ids of the edits; those that merge refused are none.
   [[nodiscard]] std::vector<Injected> injected() const;
 
-  /// An agent's frame lies there now: the labels on it go along, be they claimed before or after. What nothing was said
-  /// of lies where it was claimed. Costs what its labels have voxels.
-  void place(const LabelAnchor& where, BrickSet& touched);
+  /// An agent's frame lies there now: the labels on it go along, be they claimed before or after; those of before when
+  /// `lay_some` comes to them. What nothing was said of lies where it was claimed.
+  void place(const LabelAnchor& where);
+
+  /// Lays claims whose frame lies elsewhere now, until about so many voxels were laid; at least one. Those that do not
+  /// hold are laid when they do. Returns whether there are more.
+  bool lay_some(std::int64_t voxels, BrickSet& touched);
 
   /// Whether `place` would say something new of claims that there are.
   [[nodiscard]] bool is_news(const LabelAnchor& where) const;
@@ -128,6 +133,8 @@ class Labels {
     What what = LabelCorrection::TakeOff{};                 ///< not heeded for a claim
     bool is_claim = false;
     bool active = true;
+    bool is_astray = false;  ///< its frame lies elsewhere since it was laid
+    bool is_queued = false;  ///< to be laid
   };
 
   struct Apply;
@@ -150,6 +157,8 @@ class Labels {
   [[nodiscard]] std::map<ClassId, std::string> names_if(std::uint32_t step, bool active) const;
   void touch(InstanceId of, BrickSet& touched) const;
   void lay(std::uint32_t step, const Transform& T_map_agent, BrickSet& touched);
+  void lay_if_astray(std::uint32_t step, BrickSet& touched);
+  [[nodiscard]] bool holds(std::uint32_t step) const;
   void give(InstanceId of);
 
   double resolution_;
@@ -159,6 +168,8 @@ class Labels {
   std::map<ClassId, Class> classes_;
   std::map<InstanceId, std::vector<std::uint32_t>> claims_;   ///< steps, ascending; by whom they were made for
   std::map<InstanceId, std::vector<std::uint32_t>> changes_;  ///< TakeOff and Reassign, by what they concern
+  std::map<InstanceId, std::set<InstanceId>> sources_;        ///< what was ever reassigned to it
+  std::deque<std::uint32_t> to_lay_;
   std::map<std::string, std::vector<std::uint32_t>> by_edit_;
   std::map<std::string, EditState> edits_;
   struct Frame {
@@ -169,7 +180,7 @@ class Labels {
   std::vector<std::uint32_t> renames_;
   std::unordered_map<BrickIndex, std::vector<std::uint32_t>, IndexHash> by_brick_;  ///< claims, ascending
   std::size_t instances_ = 0;
-  std::int64_t voxels_ = 0;
+  std::int64_t voxels_ = 0, voxels_ever_ = 0;  ///< of claims that are not undone; of all
 };
 
 }  // namespace concord

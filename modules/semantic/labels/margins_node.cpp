@@ -32,7 +32,7 @@ void MarginsNode::tell() {
   }
   std::vector<KeptClearOf> things;
   if (!names.empty()) {
-    for (const auto& [of, voxels] : view_.by_instance([&](ClassId label) { return names.contains(label); })) {
+    for (const auto& [of, voxels] : view_.by_instance([&](InstanceId one) { return names.contains(one.label); })) {
       const std::string& name = names.at(of.label);
       const auto& terms = context_.site.classes.at(name);
       const std::string thing = name + " " + std::to_string(of.instance);

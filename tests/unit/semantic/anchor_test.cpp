@@ -76,6 +76,12 @@ TEST(Anchor, BelongsToTheAgentThatHasMostOfIt) {
   EXPECT_EQ(anchor_of({{1, 1, 10}, {500, 0, 0}, {501, 0, 0}}, layers, kResolution).agent, "");  // a minority
 }
 
+void place(Labels& labels, const Transform& T_map_agent, BrickSet& touched) {
+  labels.place({"robot", "f", T_map_agent});
+  while (labels.lay_some(1, touched)) {
+  }
+}
+
 TEST(Labels, GoAlongWithTheAgentBackAndForthAndLeaveNothingBehind) {
   const BrickMap agent = plate_and_post();
   const Transform then = turned(1.03, -0.4, 17), now = turned(-2.21, 3.3, 64);
@@ -88,7 +94,7 @@ TEST(Labels, GoAlongWithTheAgentBackAndForthAndLeaveNothingBehind) {
   EXPECT_FALSE(labels.is_news({"robot", "other", now}));
   ASSERT_TRUE(labels.is_news({"robot", "f", now}));
   touched.clear();
-  labels.place({"robot", "f", now}, touched);
+  place(labels, now, touched);
   EXPECT_FALSE(labels.is_news({"robot", "f", now}));
   EXPECT_TRUE(touched.contains(brick_of(claim.voxels.back())));
   EXPECT_EQ(labels.at(claim.voxels[0]), (InstanceId{1, 2}));  // lies on the map
@@ -97,18 +103,67 @@ TEST(Labels, GoAlongWithTheAgentBackAndForthAndLeaveNothingBehind) {
   LabelView view(labels, map, kResolution);
   for (const BrickIndex index : labels.sorted_bricks()) view.refresh(index);
   EXPECT_GT(view.instance({1, 1}).voxels, 400);
-  labels.place({"robot", "f", then}, touched);
+  place(labels, then, touched);
   for (const VoxelIndex v : claim.voxels) EXPECT_TRUE(labels.at(v).has_value());
   // One that is claimed where it lies now, and undone while it lies elsewhere.
   LabelRequest undo;
   undo.op = LabelRequest::Op::kUndo;
   undo.correction_id = "l1";
   labels.apply({3, "u1", "eva", 0, 1, *labels.check(undo, {})}, touched);
-  labels.place({"robot", "f", now}, touched);
+  place(labels, now, touched);
   undo.op = LabelRequest::Op::kRedo;
   labels.apply({4, "u2", "eva", 0, 1, *labels.check(undo, {})}, touched);
-  labels.place({"robot", "f", then}, touched);
+  place(labels, then, touched);
   EXPECT_EQ(labels.at(claim.voxels.back()), (InstanceId{1, 1}));
+}
+
+Labels::What asked(const Labels& labels, LabelRequest::Op op, const std::string& id) {
+  LabelRequest request;
+  request.op = op;
+  request.correction_id = id;
+  return *labels.check(request, {});
+}
+
+/// Laid a few at a time while they are moved, undone and redone, labels come to lie as if all was laid at once.
+RC_GTEST_PROP(Labels, LieAlikeHoweverManyAreLaidAtOnce, ()) {
+  constexpr int kClaims = 6;
+  Labels a_few(kResolution), at_once(kResolution);
+  BrickSet touched, ignored;
+  std::vector<bool> active(kClaims, true);
+  std::int64_t revision = 0;
+  const auto apply = [&](const std::string& id, const Labels::What& what) {
+    ++revision;
+    a_few.apply({revision, id, "eva", 0, 1, what}, touched);
+    at_once.apply({revision, id, "eva", 0, 1, what}, ignored);
+  };
+  for (int i = 0; i < kClaims; ++i) {
+    const Transform T = turned(0.1 * i, 0.3, 10 * i);
+    LabelCorrection::Claim claim{
+        {1, static_cast<std::uint32_t>(i + 1)}, i == 0 ? "thing" : "", {}, "", {"robot", "f", T}};
+    for (int x = 0; x < 20; ++x) claim.voxels.push_back({x, 3 * i, 0});
+    std::ranges::sort(claim.voxels);
+    apply("l" + std::to_string(i), claim);
+  }
+  const int steps = *rc::gen::inRange(1, 30);
+  for (int step = 0; step < steps; ++step) {
+    const int what = *rc::gen::inRange(0, 3), which = *rc::gen::inRange(0, kClaims);
+    if (what == 0) {
+      const Transform T = turned(*rc::gen::inRange(-30, 30) * 0.07, 0.2, *rc::gen::inRange(0, 360));
+      a_few.place({"robot", "f", T});
+      place(at_once, T, ignored);
+    } else if (what == 1) {
+      (void)a_few.lay_some(*rc::gen::inRange(1, 60), touched);
+    } else {
+      const auto op = active[which] ? LabelRequest::Op::kUndo : LabelRequest::Op::kRedo;
+      apply("u" + std::to_string(step), asked(a_few, op, "l" + std::to_string(which)));
+      active[which] = !active[which];
+    }
+  }
+  while (a_few.lay_some(1, touched)) {
+  }
+  for (int x = -60; x < 60; ++x) {
+    for (int y = -60; y < 60; ++y) RC_ASSERT(a_few.at({x, y, 0}) == at_once.at({x, y, 0}));
+  }
 }
 
 RC_GTEST_PROP(Anchor, NoVoxelIsLostOnTheWay, ()) {

@@ -267,5 +267,24 @@ RC_GTEST_PROP(LabelsProperty, AnyHistoryIsItsFold, ()) {
   }
 }
 
+TEST(Labels, WhatIsUndoneLeavesRoomForOthers) {
+  World world;
+  std::vector<VoxelIndex> block;
+  for (std::int32_t z = 0; z < 50; ++z) {
+    for (std::int32_t y = 0; y < 100; ++y) {
+      for (std::int32_t x = 0; x < 100; ++x) block.push_back({x, y, z});
+    }
+  }
+  std::ranges::sort(block);
+  ASSERT_EQ(static_cast<std::int64_t>(block.size()), kMaxLabelVoxels);
+  for (std::int64_t i = 0; i < kMaxAllLabelVoxels / kMaxLabelVoxels; ++i) ASSERT_TRUE(world.label("box", block));
+  EXPECT_EQ(world.label("box", {{0, 0, 0}}).error().code, Code::kTooLarge);
+  ASSERT_TRUE(world.undo("r1"));
+  ASSERT_TRUE(world.label("box", {{0, 0, 0}}));
+  EXPECT_EQ(world.undo("r1", true).error().code, Code::kTooLarge);
+  ASSERT_TRUE(world.undo("r2"));
+  EXPECT_TRUE(world.undo("r1", true));
+}
+
 }  // namespace
 }  // namespace concord
