@@ -18,6 +18,7 @@ const std::string kQueries = "in/label_query";
 constexpr std::int64_t kTick = 50'000;         ///< changes of the map are gathered for so long, microseconds
 constexpr std::int64_t kLaidAtOnce = 20'000;   ///< voxels of labels whose agent was realigned, in a tick
 constexpr std::int64_t kSlotPeriod = 200'000;  ///< the list of slots is told at most so often
+constexpr const char* kNotWhole = "semantic has just begun and does not know the whole map yet; ask again in a second";
 constexpr std::int64_t kCountPeriod = 1'000'000;
 
 std::uint64_t content_without_time(LabelRequest request) {
@@ -80,8 +81,7 @@ SemanticNode::SemanticNode(const NodeContext& context, std::launch how)
       detections_node_(context, {map_, layers_, assets_node_, store_, selection_}),
       files_node_(context, {labels_, [this](const auto& visit) { return store_.for_each(visit); },
                             [this](const std::vector<LabelCorrection>& all) { return commit(all); }}),
-      margins_node_(context, labels_, view_,
-                    [this] { return begun_ && (labels_.injected().empty() || history_node_.is_up_to_date()); }) {
+      margins_node_(context, labels_, view_, [this] { return is_whole(); }) {
   restore();
   listen_to_the_map();
   Bus& bus = context_.bus;
@@ -220,15 +220,20 @@ Result<Labels::What> SemanticNode::check(const LabelRequest& request) {
   return what;
 }
 
+/// Whether all that shows did so at some time: after a start, labels of models are there once merge has said which of
+/// its edits hold. What is answered before would leave some out.
+bool SemanticNode::is_whole() {
+  is_whole_ = is_whole_ || (begun_ && (labels_.injected().empty() || history_node_.is_up_to_date()));
+  return is_whole_;
+}
+
 /// One edit, whose answer is merge's: its id is the request's, so who asked hears it.
 void SemanticNode::on_delete(const LabelRequest& request) {
   if (!labels_.classes().contains(request.of.label)) {
     return replies_.deny(kRequests, request.id,
                          {Code::kNotFound, "no class " + std::to_string(request.of.label) + "; see: concord labels"});
   }
-  if (!map_receiver_.synced()) {
-    return replies_.deny(kRequests, request.id, {Code::kBusy, "the map has not arrived whole; ask again in a second"});
-  }
+  if (!is_whole()) return replies_.deny(kRequests, request.id, {Code::kBusy, kNotWhole});
   const Operation* before = history_node_.find_deletion(request.id);
   if (before != nullptr && before->author == request.author) {
     return replies_.grant(request.id, before->revision, before->count, "deleted since it was asked before");
@@ -250,6 +255,7 @@ void SemanticNode::on_delete(const LabelRequest& request) {
 
 void SemanticNode::on_query(const LabelQuery& query) {
   if (queue_.waits(query.id)) return;
+  if (!is_whole()) return replies_.deny(kQueries, query.id, {Code::kBusy, kNotWhole});
   auto found = view_.answer(query);
   if (!found) return replies_.deny(kQueries, query.id, found.error());
   const auto count = static_cast<std::int64_t>(found->size());

@@ -46,6 +46,7 @@ class SemanticNode {
   void grant(const std::string& id, const Labels::Made& made, const std::string& message);
   void refresh(const BrickSet& touched);
   void tell_slots();
+  [[nodiscard]] bool is_whole();
 
   NodeContext context_;
   Replies replies_;
@@ -62,7 +63,8 @@ class SemanticNode {
   BrickSet dirty_;  ///< the map changed there
   bool has_new_slots_ = true;
   bool begun_ = false;
-  BrickSet edited_;  ///< what merge did changes there what holds
+  bool is_whole_ = false;  ///< since this start, once
+  BrickSet edited_;        ///< what merge did changes there what holds
   EditHistoryNode history_node_;
   AssetsNode assets_node_;
   DetectionsNode detections_node_;
