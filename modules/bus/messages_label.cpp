@@ -32,11 +32,12 @@ constexpr std::array<std::pair<std::int8_t, Op>, 9> kOps{{{label_request_t::LABE
                                                           {label_request_t::UNDO, Op::kUndo},
                                                           {label_request_t::REDO, Op::kRedo},
                                                           {label_request_t::TOUCH, Op::kTouch}}};
-constexpr std::array<std::pair<std::int8_t, Kind>, 5> kKinds{{{label_query_t::ALL, Kind::kAll},
+constexpr std::array<std::pair<std::int8_t, Kind>, 6> kKinds{{{label_query_t::ALL, Kind::kAll},
                                                               {label_query_t::AT, Kind::kAt},
                                                               {label_query_t::CLASS, Kind::kClass},
                                                               {label_query_t::WITHIN, Kind::kWithin},
-                                                              {label_query_t::BORDER, Kind::kBorder}}};
+                                                              {label_query_t::BORDER, Kind::kBorder},
+                                                              {label_query_t::CLASSES, Kind::kClasses}}};
 
 template <class Table>
 auto from_table(const Table& table, std::int8_t number, const char* what) -> Result<decltype(table[0].second)> {

@@ -48,7 +48,8 @@ template <class Lcm>
     case WireFit::kFits: break;
     case WireFit::kTooLarge: return refuse(Code::kTooLarge, std::string(Lcm::getTypeName()) + " has " + check.excess);
     case WireFit::kMalformed:
-      return refuse(Code::kMalformed, std::string("bytes end early or late for a ") + Lcm::getTypeName());
+      return refuse(Code::kMalformed, std::string("bytes that are no ") + Lcm::getTypeName() +
+                                          ": cut off, too many, or a text that is not UTF-8");
   }
   Lcm message;
   if (message.decode(bytes.data(), 0, static_cast<int>(bytes.size())) != static_cast<int>(bytes.size())) {

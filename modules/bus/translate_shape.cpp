@@ -144,12 +144,12 @@ Result<Volume> volume_from_wire(const shape_t& in) {
 
 Result<std::string> title_of(const std::string& name) {
   if (is_title(name)) return name;
-  return refuse(Code::kBadName, std::string("a zone's name must be ") + kTitleRule);
+  return refuse(Code::kBadName, std::string("a name for people (of a class, a zone) must be ") + kTitleRule);
 }
 
 Result<std::string> kept_title_of(const std::string& name) {
   if (is_kept_title(name)) return name;
-  return refuse(Code::kBadName, std::string("a zone's name is ") + kKeptTitleRule);
+  return refuse(Code::kBadName, std::string("a name for people (of a class, a zone) is ") + kKeptTitleRule);
 }
 
 std::int8_t to_wire(Zone::Kind kind) {

@@ -168,7 +168,12 @@ void add_detect(Program& program) {
   command.add_option("--asset", options->assets, "only these of the server's assets");
   command.add_option("--up", options->up, "axis of the model that is up; without it y of glTF and z of others")
       ->check(CLI::IsMember({"x", "y", "z"}));
-  command.add_option("--min-score", options->min_score, "0 to 1")->capture_default_str()->check(CLI::Range(0.0, 1.0));
+  command.add_option("--min-score", options->min_score, "0 to 1")
+      ->capture_default_str()
+      ->check([](const std::string& text) {
+        const auto number = parse_numbers(text, 1);
+        return number && (*number)[0] >= 0 && (*number)[0] <= 1 ? "" : "must lie between 0 and 1";
+      });
 }
 
 }  // namespace concord

@@ -6,7 +6,6 @@
 #include "bus/messages_label.hpp"
 #include "cli/arguments.hpp"
 #include "cli/label_list.hpp"
-#include "cli/list_copy.hpp"
 #include "cli/report.hpp"
 #include "cli/selection_options.hpp"
 #include "cli/semantic_commands.hpp"
@@ -30,17 +29,11 @@ const std::map<std::string, Op>& ops() {
   return all;
 }
 
-/// Copies of streams; they must live as long as `live` handles messages.
-struct Copies {
-  std::optional<StreamCopy> map;
-  std::optional<ListCopy<LabelSlot>> slots;
-};
-
-/// What one touch selects, in the map as it is now.
-tl::expected<Shape, Failure> touched(Live& live, Copies& copies, const std::string& seed) {
+/// What one touch selects, in the map as it is now. @param map must live as long as `live` handles messages.
+tl::expected<Shape, Failure> touched(Live& live, std::optional<StreamCopy>& map, const std::string& seed) {
   const auto p = parse_vector(seed);
   if (!p) return fail(p.error());
-  StreamCopy& copy = copies.map.emplace(live, "out/map");
+  StreamCopy& copy = map.emplace(live, "out/map");
   if (const auto synced = copy.wait_synced(live); !synced) return tl::unexpected(synced.error());
   const double resolution = live.site().resolution;
   const auto proposal = propose_object(occupied_of(copy.map()), resolution, *p);
@@ -48,16 +41,8 @@ tl::expected<Shape, Failure> touched(Live& live, Copies& copies, const std::stri
   return VoxelList{resolution, to_boxes(proposal->voxels.voxels())};
 }
 
-/// The number that a class has now.
-tl::expected<ClassId, Failure> class_called(Live& live, Copies& copies, const std::string& name) {
-  const auto all = copies.slots.emplace(live, "out/label_slots").wait_synced(live);
-  if (!all) return tl::unexpected(all.error());
-  const auto found = std::ranges::find(*all, name, &LabelSlot::name);
-  if (found == all->end()) return fail(Exit::kRefused, "NOT_FOUND", "no class " + name + "; see: concord labels");
-  return found->of.label;
-}
-
-tl::expected<void, Failure> fill(const Options& options, Live& live, Copies& copies, LabelRequest& request) {
+tl::expected<void, Failure> fill(const Options& options, Live& live, std::optional<StreamCopy>& map,
+                                 LabelRequest& request) {
   if (request.op == Op::kUndo || request.op == Op::kRedo) {
     request.correction_id = options.subject;
     return {};
@@ -65,7 +50,7 @@ tl::expected<void, Failure> fill(const Options& options, Live& live, Copies& cop
   request.of.instance = options.instance;
   request.to_instance = options.to_instance;
   if (request.op != Op::kLabel) {
-    const auto label = class_called(live, copies, options.subject);
+    const auto label = class_called(live, options.subject);
     if (!label) return tl::unexpected(label.error());
     request.of.label = *label;
     request.name = options.to;
@@ -82,7 +67,7 @@ tl::expected<void, Failure> fill(const Options& options, Live& live, Copies& cop
     request.frame = options.selection.frame;
     return {};
   }
-  auto shape = touched(live, copies, options.seed);
+  auto shape = touched(live, map, options.seed);
   if (!shape) return tl::unexpected(shape.error());
   request.shape = std::move(*shape);
   return {};
@@ -91,13 +76,13 @@ tl::expected<void, Failure> fill(const Options& options, Live& live, Copies& cop
 Outcome label(const Options& options, const Common& common) {
   Live live(common);
   if (const auto taken = live.take_resolution(); !taken) return tl::unexpected(taken.error());
-  Copies copies;
+  std::optional<StreamCopy> map;
   LabelRequest request;
   request.id = live.id_or_new(options.id);
   request.author = author_or_user(options.author);
   request.op = ops().at(options.op);
   request.utime = live.bus().now();
-  if (const auto filled = fill(options, live, copies, request); !filled) return tl::unexpected(filled.error());
+  if (const auto filled = fill(options, live, map, request); !filled) return tl::unexpected(filled.error());
   const auto made = std::make_shared<std::optional<LabelInstance>>();
   live.hear<LabelList>("out/label_list", [made, id = request.id](const std::string&, const LabelList& list) {
     if (list.id == id && !list.instances.empty()) *made = list.instances.front();

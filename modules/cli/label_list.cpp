@@ -1,5 +1,6 @@
 #include "cli/label_list.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "bus/messages_label.hpp"
@@ -19,6 +20,18 @@ tl::expected<std::vector<LabelInstance>, Failure> request_labels(Live& live, Lab
   return all;
 }
 
+tl::expected<ClassId, Failure> class_called(Live& live, const std::string& name) {
+  LabelQuery query;
+  query.kind = LabelQuery::Kind::kClasses;
+  const auto all = request_labels(live, query);
+  if (!all) return tl::unexpected(all.error());
+  const auto found = std::ranges::find(*all, name, &LabelInstance::name);
+  if (found == all->end()) {
+    return fail(Exit::kRefused, "NOT_FOUND", "no class " + name + "; see: concord labels --classes");
+  }
+  return found->of.label;
+}
+
 nlohmann::json to_json(const LabelInstance& instance, double resolution) {
   const Eigen::Vector3d& c = instance.centroid;
   nlohmann::json out = {{"class", instance.name},
@@ -27,6 +40,7 @@ nlohmann::json to_json(const LabelInstance& instance, double resolution) {
                         {"voxels", instance.voxels},
                         {"centroid", std::array<double, 3>{c.x(), c.y(), c.z()}},
                         {"box", nullptr}};
+  if (!instance.asset.empty()) out["asset"] = instance.asset;
   if (instance.voxels > 0) out["box"] = to_json(extent(instance.min, instance.max, resolution));
   return out;
 }
@@ -35,9 +49,10 @@ std::string to_words(const std::vector<LabelInstance>& instances, double resolut
   std::vector<std::vector<std::string>> rows;
   for (const LabelInstance& one : instances) {
     rows.push_back({one.name, std::to_string(one.of.instance), format_count(one.voxels) + " voxels",
-                    one.voxels > 0 ? to_words(extent(one.min, one.max, resolution)) : ""});
+                    one.voxels > 0 ? to_words(extent(one.min, one.max, resolution)) : "",
+                    one.asset.empty() ? "" : "asset " + one.asset});
   }
-  return format_table(rows, "lrrl");
+  return format_table(rows, "lrrll");
 }
 
 }  // namespace concord

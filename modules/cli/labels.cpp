@@ -21,13 +21,17 @@ constexpr std::uint64_t kMostFile = 27 * kMaxCloudPoints + 1'000'000;
 
 struct Options {
   std::string at, of_class, within, border, out, load, author;
+  bool classes = false;
 };
 
 Result<LabelQuery> query_of(const Options& options) {
   LabelQuery query;
-  const int given = !options.at.empty() + !options.of_class.empty() + !options.within.empty() + !options.border.empty();
+  const int given = !options.at.empty() + !options.of_class.empty() + !options.within.empty() +
+                    !options.border.empty() + options.classes;
   if (given > 1) return refuse(Code::kBadRequest, "give one of --at, --class, --within and --border");
-  if (!options.at.empty()) {
+  if (options.classes) {
+    query.kind = LabelQuery::Kind::kClasses;
+  } else if (!options.at.empty()) {
     query.kind = LabelQuery::Kind::kAt;
     const auto p = parse_vector(options.at);
     if (!p) return tl::unexpected(p.error());
@@ -80,6 +84,7 @@ Outcome load(const Options& options, Live& live, const Common& common) {
   const auto instances = instances_of(*cloud);
   if (!instances) return fail(instances.error());
   std::int64_t voxels = 0;
+  std::vector<std::string> ids;
   for (const auto& [of, own] : *instances) {
     LabelRequest request;
     request.id = live.new_id();
@@ -92,10 +97,12 @@ Outcome load(const Options& options, Live& live, const Common& common) {
     const auto answer = live.ask("in/label", request);
     if (!answer) return tl::unexpected(answer.error());
     voxels += answer->count;
+    ids.push_back(request.id);
   }
   common.print(
-      {{"instances", instances->size()}, {"voxels", voxels}},
-      format_count(static_cast<std::int64_t>(instances->size())) + " instances, " + format_count(voxels) + " voxels");
+      {{"instances", instances->size()}, {"voxels", voxels}, {"ids", ids}},
+      format_count(static_cast<std::int64_t>(instances->size())) + " instances, " + format_count(voxels) + " voxels" +
+          (ids.empty() ? "" : "\nconcord label undo takes one back; ids " + ids.front() + " to " + ids.back()));
   return Exit::kDone;
 }
 
@@ -129,6 +136,7 @@ void add_labels(Program& program) {
   command.add_option("--class", options->of_class, "all of this class");
   command.add_option("--within", options->within, "\"x y z r\": what lies within r metres of a point");
   command.add_option("--border", options->border, "the free space that things of this class border");
+  command.add_flag("--classes", options->classes, "all classes that were named");
   command.add_option("--out", options->out, "writes the map with its labels: .pcd or .ply");
   command.add_option("--load", options->load, "labels the map as such a file says, with its numbers");
   command.add_option("--author", options->author, "who loads; without it $USER");

@@ -101,7 +101,11 @@ tl::unexpected<Failure> refused(const Answer& answer) {
 tl::expected<Answer, Failure> Live::ask_bytes(const std::string& channel, const Bytes& request, const std::string& id) {
   answers_.erase(id);  // a lease is asked for with one id again and again
   ask_until(channel, request, timeout_, [&] { return answer_to(id) != nullptr && !is_busy(*answer_to(id)); });
-  if (answer_to(id) == nullptr) return no_answer("the stack");
+  if (answer_to(id) == nullptr) {
+    auto failure = no_answer("the stack");
+    failure.value().message += "; it may be done all the same: asked again with --id " + id + " it is done once";
+    return failure;
+  }
   const Answer& answer = *answer_to(id);
   if (!answer.ok) return refused(answer);
   return answer;

@@ -38,6 +38,9 @@ Result<Scene> load_scene(const Options& options) {
   if (!T) return tl::unexpected(T.error());
   if (const auto fine = checked_resolution(options.resolution); !fine) return tl::unexpected(fine.error());
   const auto mesh = read_model_file(options.file);
+  if (!mesh && mesh.error().code == Code::kBadName) {
+    return refuse(Code::kBadName, options.file + ": a map must be .bt or .ot, a mesh .glb, .gltf, .obj, .stl or .ply");
+  }
   if (!mesh) return tl::unexpected(mesh.error());
   auto voxels = voxelize(*mesh, {*T, 1.0}, options.resolution, Fill::kSurface);
   if (!voxels) return tl::unexpected(voxels.error());

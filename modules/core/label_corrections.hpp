@@ -111,10 +111,11 @@ struct LabelRequest {
 struct LabelQuery {
   enum class Kind {
     kAll,
-    kAt,      ///< the instance at a point
-    kClass,   ///< all instances of a class
-    kWithin,  ///< instances with a voxel's centre within a distance of a point
-    kBorder,  ///< of a class: the free voxels that share a face with each instance
+    kAt,       ///< the instance at a point
+    kClass,    ///< all instances of a class
+    kWithin,   ///< instances with a voxel's centre within a distance of a point
+    kBorder,   ///< of a class: the free voxels that share a face with each instance
+    kClasses,  ///< all that were named, be it that nothing of them shows: as instances 0
   };
   std::string id;
   Kind kind = Kind::kAll;

@@ -150,6 +150,12 @@ Result<std::vector<LabelInstance>> LabelView::found(const LabelQuery& query) con
   using Kind = LabelQuery::Kind;
   std::vector<LabelInstance> out;
   if (query.kind == Kind::kWithin) return within(query);
+  if (query.kind == Kind::kClasses) {
+    for (const auto& [label, of_class] : labels_.classes()) {
+      out.push_back({{label, 0}, of_class.name, 0, {}, {}, {0, 0, 0}, ""});
+    }
+    return out;
+  }
   if (query.kind == Kind::kAt) {
     if (query.p_map.cwiseAbs().maxCoeff() >= kMaxVoxel * resolution_) return out;
     const LogOdds value = shown_.at(voxel_of(query.p_map, resolution_));
