@@ -1,6 +1,7 @@
 #include "semantic/segmentation/room_planes.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <map>
 #include <set>
 #include <vector>
@@ -12,6 +13,7 @@ using Cell = std::pair<std::int32_t, std::int32_t>;
 
 /// Of all voxels: what may lie below a floor or above a ceiling.
 constexpr double kBeyond = 0.02;
+constexpr std::int32_t kMostThick = 4;  ///< layers of a floor or ceiling besides its own
 
 struct Layers {
   std::map<std::int32_t, std::int64_t> count;  ///< of voxels, by layer
@@ -41,6 +43,17 @@ std::optional<std::int32_t> level(const Layers& layers, Iterator begin, Iterator
     beyond += it->second;
   }
   return std::nullopt;
+}
+
+/// Up (or, with -1, down) to which layer a level surface is seen: a noisy scan of a floor is several voxels thick.
+std::int32_t face_of(const Layers& layers, std::int32_t level, std::int32_t step) {
+  const auto at = [&](std::int32_t z) {
+    const auto it = layers.count.find(z);
+    return it != layers.count.end() ? it->second : std::int64_t{0};
+  };
+  std::int32_t face = level;
+  while (std::abs(face - level) < kMostThick && 2 * at(face + step) >= at(level)) face += step;
+  return face;
 }
 
 /// Of the layers of a band, those where this column or one of the eight beside it is occupied, by column.
@@ -74,10 +87,12 @@ RoomPlanes find_room_planes(const BrickMasks& occupied, double resolution) {
   for (const auto& [cell, filled] : layers_by_column(voxels, low, high)) {
     if (static_cast<double>(filled.size()) >= kWallFilled * (high - low + 1)) walls.insert(cell);
   }
+  const std::int32_t floor_face = face_of(layers, floor, 1), ceiling_face = face_of(layers, ceiling, -1);
   for (const VoxelIndex v : voxels) {
     // A floor leans by a voxel too; what stands above its lowest voxel stands on it.
-    const bool of_floor = out.floor_z && (v.z <= floor || (v.z == floor + 1 && !occupied.contains({v.x, v.y, floor})));
-    const bool of_ceiling = out.ceiling_z && v.z >= ceiling - 1;
+    const bool leans = v.z == floor_face + 1 && !occupied.contains({v.x, v.y, floor_face});
+    const bool of_floor = out.floor_z && (v.z <= floor_face || leans);
+    const bool of_ceiling = out.ceiling_z && v.z >= ceiling_face - 1;
     if (of_floor || of_ceiling || walls.contains({v.x, v.y})) out.voxels.insert(v);
   }
   return out;

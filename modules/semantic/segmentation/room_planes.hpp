@@ -16,9 +16,10 @@ struct RoomPlanes {
 /// Finds floor, ceiling and walls among occupied voxels of a map that is z up.
 ///
 /// Floor: the lowest three layers that together cover kFloorArea, if hardly anything lies below them. Ceiling: the same
-/// from above. Walls: columns that are occupied in most layers of the band from kWallLow to kWallHigh of the room's
-/// height, to which furniture does not reach; a wall may lean by a voxel, and is as thick as it is seen.
-/// A map without floor or ceiling (a robot's) has its lowest and highest layer for them.
+/// from above; either with the layers next to it, up to four, that have half as many voxels. Walls: columns that are
+/// occupied in most layers of the band from kWallLow to kWallHigh of the room's height, to which furniture does not
+/// reach; a wall may lean by a voxel, and is as thick as it is seen. A map without floor or ceiling (a robot's) has its
+/// lowest and highest layer for them.
 [[nodiscard]] RoomPlanes find_room_planes(const BrickMasks& occupied, double resolution);
 
 inline constexpr double kFloorArea = 1.0;  ///< square metres

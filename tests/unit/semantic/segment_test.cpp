@@ -65,6 +65,17 @@ TEST(Segment, ATouchOnASeatIsTheCouchWithItsBack) {
   EXPECT_EQ(share_of(room.shell, proposal->voxels), 0.0);
 }
 
+TEST(Segment, AFloorThatIsSeenThreeVoxelsThickIsNoObject) {
+  const Room room;
+  BrickMasks all = room.all();
+  for (const double z : {0.06, 0.11}) all.insert(box({0.11, 0.11, z}, {4.91, 3.91, z + 0.001}));
+  EXPECT_EQ(propose_object(all, kResolution, {2.9, 0.6, 0.1}).error().code, Code::kEmpty);
+  const auto proposal = propose_object(all, kResolution, {3.8, 2.8, 0.41});
+  ASSERT_TRUE(proposal);
+  EXPECT_GT(share_of(room.back, proposal->voxels), 0.85);
+  EXPECT_LT(proposal->voxels.count(), 2 * (room.seat.count() + room.back.count()));
+}
+
 TEST(Segment, TouchingAWallFarFromAllProposesNothing) {
   EXPECT_EQ(propose_object(Room().all(), kResolution, {0.01, 3.5, 1.5}).error().code, Code::kEmpty);
   EXPECT_EQ(propose_object({}, kResolution, {0, 0, 0}).error().code, Code::kEmpty);
