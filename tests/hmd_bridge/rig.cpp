@@ -49,7 +49,7 @@ class Rig::Parts {
     Gate gate(random_secret);
     Hub::Config hub = hub_config(site);
     hub.local_role = options.local_role;
-    BridgeNode node(context("hmd-bridge"), gate, hub);
+    BridgeNode node(context("hmd-bridge"), gate, hub, std::launch::async);
     StaticFiles files;
     (void)files.add(folder / "web", "/");
     Server::Config config;
