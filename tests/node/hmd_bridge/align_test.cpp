@@ -89,6 +89,16 @@ TEST_F(Aligning, WhatCannotBeFoundIsRefusedForItsReason) {
   EXPECT_CODE(ana.ask(AlignRequest{"robot6", "robot5", {}}), "AMBIGUOUS");
 }
 
+TEST_F(Aligning, MapsThatContradictEachOtherAreRefused) {
+  test::Points before = test::room(), after = before;
+  test::add_box(before, {-2.0, -1.9, 0.0}, {1.4, -1.6, 1.1}, false);
+  test::add_box(after, {-2.0, -1.4, 0.0}, {1.4, -1.1, 1.1}, false);
+  lab.agent_maps("robot2", voxels_of(before));
+  lab.agent_maps("robot3", voxels_of(after));
+  EXPECT_CODE(ana.ask(AlignRequest{"robot3", "robot2", kHere}), "DIVERGED");
+  EXPECT_FALSE(agent("robot3")["aligned"].get<bool>());
+}
+
 TEST_F(Aligning, DecisionsHoldOnlyForWhatStands) {
   lab.agent_maps("robot2", voxels_of(right_part()));
   EXPECT_CODE(ana.ask(AlignAcceptRequest{"none"}), "EXPIRED");

@@ -54,6 +54,28 @@ TEST_F(Working, APathIsFollowedThroughItsChanges) {
   EXPECT_CODE(ana.ask(PathRequest{"robot1", Frame::kMap, false}), "OK");
 }
 
+TEST_F(Working, APathSaysHowLongItTakesWhatItKeepsAwayFromAndHowFarOneGets) {
+  EXPECT_CODE(ana.ask(ZoneAddRequest{"dock", ZoneKind::kNoGo, Frame::kMap, Box{{2.8, 0, 0}, {3.2, 0.6, 1}}}), "OK");
+  lab.run(1);
+  const Json goal = ana.ask(GoalRequest{"robot1", Frame::kMap, Pose{{5, 1, 0}, {0, 0, 0, 1}}});
+  ASSERT_TRUE(has_code(goal, "OK"));
+  const Json path = goal["answer"]["path"];
+  EXPECT_NEAR(path["seconds"].get<double>() * lab.site.agent("robot1").speed, path["length"].get<double>(), 0.01);
+  EXPECT_EQ(path["zones"], Json({"dock"}));
+  EXPECT_FALSE(path.contains("nearest") || path.contains("failed_leg")) << path;
+  EXPECT_CODE(ana.ask(PathRequest{"robot1", Frame::kMap, true}), "OK");
+  EXPECT_CODE(ana.ask(add(box(3.4, -1, 0.1, 3.6, 7, 0.8))), "OK") << "from wall to wall";
+  lab.run(3);
+  ana.read();
+  const Json cut = ana.events["path"]["path"];
+  EXPECT_NE(cut["status"], "OK") << cut;
+  EXPECT_EQ(cut["failed_leg"], 0) << cut;
+  ASSERT_TRUE(cut.contains("nearest")) << cut;
+  EXPECT_GT(cut["nearest"][0], 2.5) << "this side of the wall";
+  EXPECT_LT(cut["nearest"][0], 3.4);
+  EXPECT_FALSE(cut.contains("seconds"));
+}
+
 TEST_F(Working, APathIsSaidAnewInOnesOwnFrameWhenThatLiesElsewhere) {
   Client bert(lab);
   become_agent(bert, "headset1", true);  // a metre off along x

@@ -79,7 +79,8 @@ TEST_F(PeopleNodeTest, SaysSinceWhenTheMapHoldsWhatWasMade) {
   const std::size_t count = said.size();
   run(2'000'000);
   EXPECT_GT(said.size(), count) << "and each second";
-  EXPECT_EQ(undo("u1", "e1").revision, said.back().edit_revision);
+  const std::int64_t undone = undo("u1", "e1").revision;
+  EXPECT_EQ(said.back().edit_revision, undone);
   EXPECT_GT(said.back().map_revision, before.map_revision);
   EXPECT_EQ(said.back().boot_id, before.boot_id);
 }
