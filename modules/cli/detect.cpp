@@ -81,38 +81,71 @@ Detection detection_of(Live& live, const Options& options, const std::string& as
   return detection;
 }
 
-/// Says what it finds as anybody who sees something does.
+/// The assets that are meant; all, if none is named.
+tl::expected<std::vector<Asset>, Failure> assets_to_find(const Options& options, const std::filesystem::path& folder) {
+  const auto read = read_asset_folder(folder);
+  if (!read) return fail(read.error());
+  std::vector<Asset> out;
+  for (const std::string& name : options.assets) {
+    const auto it = read->assets.find(name);
+    if (it == read->assets.end()) return fail({Code::kNotFound, "no asset " + name + "; see: concord asset list"});
+    out.push_back(it->second);
+  }
+  if (!options.assets.empty()) return out;
+  for (const auto& [name, asset] : read->assets) out.push_back(asset);
+  return out;
+}
+
+/// What is found of one asset, and said as anybody who sees something does.
+struct Told {
+  nlohmann::json all = nlohmann::json::array(), failed = nlohmann::json::array();
+  std::vector<std::vector<std::string>> rows;
+  std::string failures;
+};
+
+tl::expected<void, Failure> tell(Live& live, const Options& options, const std::string& name,
+                                 const std::vector<FoundModel>& found, Told& told) {
+  for (const FoundModel& one : found) {
+    const auto answer = live.ask("in/detection", detection_of(live, options, name, one));
+    if (!answer) return tl::unexpected(answer.error());
+    auto object = to_json(name, one);
+    object["thing"] = answer->revision;
+    told.all.push_back(object);
+    told.rows.push_back(to_row(name, one));
+    told.rows.back().push_back(answer->message);
+  }
+  return {};
+}
+
+/// An asset whose model cannot be used does not keep the others from being found.
 Outcome in_agent(const Options& options, const Common& common) {
   if (!options.agent.empty() && !is_name(options.agent)) return bad_name(options.agent);
   Live live(common);
   if (const auto taken = live.take_resolution(); !taken) return tl::unexpected(taken.error());
   const auto folder = live.site().state / "assets";
-  const auto assets = read_asset_folder(folder);
-  if (!assets) return fail(assets.error());
+  const auto assets = assets_to_find(options, folder);
+  if (!assets) return tl::unexpected(assets.error());
   StreamCopy copy(live, options.agent.empty() ? "out/map" : "out/agent/" + options.agent);
   const auto synced = options.agent.empty() ? copy.wait_synced(live) : wait_for_submap(live, copy, options.agent);
   if (!synced) return tl::unexpected(synced.error());
-  nlohmann::json all = nlohmann::json::array();
-  std::vector<std::vector<std::string>> rows;
-  for (const auto& [name, asset] : *assets) {
-    if (!options.assets.empty() && std::ranges::find(options.assets, name) == options.assets.end()) continue;
-    const auto mesh = read_model_file(folder / asset.file);
-    if (!mesh) return fail({mesh.error().code, name + ": " + mesh.error().message});
-    const auto found = find_model(*mesh, asset.unit, copy.map(), live.site().resolution,
-                                  {up_of(options, asset.file), options.min_score, 20});
-    if (!found) return fail(found.error());
-    for (const FoundModel& one : *found) {
-      const auto answer = live.ask("in/detection", detection_of(live, options, name, one));
-      if (!answer) return tl::unexpected(answer.error());
-      auto object = to_json(name, one);
-      object["thing"] = answer->revision;
-      all.push_back(object);
-      rows.push_back(to_row(name, one));
-      rows.back().push_back(answer->message);
+  Told told;
+  for (const Asset& asset : *assets) {
+    const auto found = read_model_file(folder / asset.file).and_then([&](const TriangleMesh& mesh) {
+      return find_model(mesh, asset.unit, copy.map(), live.site().resolution,
+                        {up_of(options, asset.file), options.min_score, 20});
+    });
+    if (!found) {
+      told.failed.push_back(
+          {{"asset", asset.name}, {"code", name(found.error().code)}, {"message", found.error().message}});
+      told.failures += "\n" + asset.name + " was not looked for: " + found.error().message;
+      continue;
     }
+    if (const auto done = tell(live, options, asset.name, *found, told); !done) return tl::unexpected(done.error());
   }
-  common.print({{"found", all}}, rows.empty() ? "found none" : format_table(rows, "llrrl"));
-  return rows.empty() ? Exit::kNegative : Exit::kDone;
+  common.print({{"found", told.all}, {"failed", told.failed}},
+               (told.rows.empty() ? "found none" : format_table(told.rows, "llrrl")) + told.failures);
+  if (!told.failed.empty() && told.rows.empty()) return Exit::kRefused;
+  return told.rows.empty() ? Exit::kNegative : Exit::kDone;
 }
 
 }  // namespace

@@ -3,6 +3,6 @@
 
 int main(int argc, char** argv) {
   return concord::run_process("semantic", argc, argv, [](const concord::NodeContext& context) {
-    return std::make_shared<concord::SemanticNode>(context);
+    return std::make_shared<concord::SemanticNode>(context, std::launch::async);
   });
 }

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <bit>
 #include <stdexcept>
+#include <utility>
 
 #include <spdlog/spdlog.h>
 
 #include "bus/recent_answers.hpp"
 #include "semantic/labels/anchor.hpp"
-#include "semantic/segmentation/segment.hpp"
 
 namespace concord {
 namespace {
@@ -31,13 +31,14 @@ std::string words(const LabelInstance& instance) {
 
 }  // namespace
 
-SemanticNode::SemanticNode(const NodeContext& context)
+SemanticNode::SemanticNode(const NodeContext& context, std::launch how)
     : context_(context),
       replies_(context),
       store_(context.site.state / "semantic.db", context.site.resolution),
       layers_(context),
       labels_(context.site.resolution),
       view_(labels_, map_, context.site.resolution),
+      selection_(map_, context.site.resolution),
       map_receiver_(context.bus, context.counters, {.stream = "out/map", .resolution = context.site.resolution},
                     {.on_frame =
                          [this](const std::string&) {
@@ -62,17 +63,24 @@ SemanticNode::SemanticNode(const NodeContext& context)
                     view_.shown()),
       slot_list_(context.bus, context.counters, "out/label_slots", context.site.stream.bytes_per_second),
       queue_(context.bus, context.site.stream.bytes_per_second),
-      assets_node_(context, {labels_,
-                             [this](const std::string& id, const std::string& author, std::uint64_t content,
-                                    Labels::What what) { return commit(id, author, content, std::move(what)); },
-                             [this](const BrickSet& touched) { refresh(touched); },
-                             [this](InstanceId of) { return view_.instance(of); }}),
-      detections_node_(context,
-                       {labels_, map_, assets_node_, [this](const WorkFrame& frame) { return T_map_frame(frame); }}),
+      history_node_(context, {.on_operation =
+                                  [this](const Operation& operation) { assets_node_.on_operation(operation, edited_); },
+                              .on_told =
+                                  [this] {
+                                    refresh(std::exchange(edited_, {}));
+                                    assets_node_.on_told();
+                                  }}),
+      assets_node_(context, how,
+                   {labels_, history_node_,
+                    [this](const std::string& id, const std::string& author, std::uint64_t content, Labels::What what) {
+                      return commit(id, author, content, std::move(what));
+                    },
+                    [this](InstanceId of) { return view_.instance(of); }}),
+      detections_node_(context, {map_, layers_, assets_node_, store_, selection_}),
       files_node_(context, {labels_, [this](const auto& visit) { return store_.for_each(visit); },
                             [this](const std::vector<LabelCorrection>& all) { return commit(all); }}),
       margins_node_(context, labels_, view_,
-                    [this] { return begun_ && (labels_.injected().empty() || assets_node_.is_up_to_date()); }) {
+                    [this] { return begun_ && (labels_.injected().empty() || history_node_.is_up_to_date()); }) {
   restore();
   listen_to_the_map();
   Bus& bus = context_.bus;
@@ -108,10 +116,9 @@ void SemanticNode::listen_to_the_map() {
 
 /// A label goes along with the agent that it lies on. Where that was last is kept: it may be gone when we start again.
 void SemanticNode::on_agents(const AgentList& list) {
-  agents_.clear();
+  selection_.follow(list.agents);
   BrickSet touched;
   for (const AgentState& agent : list.agents) {
-    agents_[agent.id] = agent;
     const LabelAnchor now{agent.id, agent.frame_id, agent.T_map_agent};
     if (!agent.aligned || !labels_.is_news(now)) continue;
     if (const auto kept = store_.put(now); !kept) {
@@ -196,7 +203,9 @@ Result<Labels::What> SemanticNode::check(const LabelRequest& request) {
   std::vector<VoxelIndex> voxels;
   const bool is_touch = request.op == LabelRequest::Op::kTouch;
   if (is_touch || request.op == LabelRequest::Op::kLabel || request.op == LabelRequest::Op::kRestore) {
-    auto taken = is_touch ? touched(request) : selected(request);
+    if (!map_receiver_.synced()) return refuse(Code::kBusy, "the map has not arrived whole; ask again in a second");
+    auto taken =
+        is_touch ? selection_.touched(request.shape, request.frame) : selection_.occupied(request.shape, request.frame);
     if (!taken) return tl::unexpected(taken.error());
     voxels = std::move(*taken);
   }
@@ -209,45 +218,6 @@ Result<Labels::What> SemanticNode::check(const LabelRequest& request) {
   return what;
 }
 
-/// What is occupied in the map now, of what a shape takes.
-Result<std::vector<VoxelIndex>> SemanticNode::selected(const LabelRequest& request) const {
-  if (!map_receiver_.synced()) return refuse(Code::kBusy, "the map has not arrived whole; ask again in a second");
-  const auto T = T_map_frame(request.frame);
-  if (!T) return tl::unexpected(T.error());
-  auto voxels = select(request.shape, *T, context_.site.resolution, kMaxLabelVoxels);
-  if (!voxels) return voxels;
-  std::erase_if(*voxels, [&](VoxelIndex v) { return !is_occupied(map_.at(v)); });
-  return voxels;
-}
-
-/// The object in the middle of what a shape takes.
-Result<std::vector<VoxelIndex>> SemanticNode::touched(const LabelRequest& request) const {
-  if (!map_receiver_.synced()) return refuse(Code::kBusy, "the map has not arrived whole; ask again in a second");
-  const auto T = T_map_frame(request.frame);
-  if (!T) return tl::unexpected(T.error());
-  const auto voxels = select(request.shape, *T, context_.site.resolution, kMaxLabelVoxels);
-  if (!voxels) return voxels;
-  if (voxels->empty()) return refuse(Code::kEmpty, "nothing was touched");
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  for (const VoxelIndex v : *voxels) middle += centre_of(v, context_.site.resolution);
-  middle /= static_cast<double>(voxels->size());
-  return propose_object(occupied_of(map_), context_.site.resolution, middle).map([](const Proposal& proposal) {
-    return proposal.voxels.voxels();
-  });
-}
-
-Result<Transform> SemanticNode::T_map_frame(const WorkFrame& frame) const {
-  if (frame.agent.empty()) return Transform::Identity();
-  const auto it = agents_.find(frame.agent);
-  if (it == agents_.end()) return refuse(Code::kNoAgent, "no agent " + frame.agent + " is known");
-  const AgentState& agent = it->second;
-  if (!frame.frame_id.empty() && frame.frame_id != agent.frame_id) {
-    return refuse(Code::kBadFrame, "frame " + frame.frame_id + " of " + frame.agent + " is over");
-  }
-  if (!agent.aligned) return refuse(Code::kNotAligned, frame.agent + " is not aligned; align it first");
-  return agent.T_map_agent;
-}
-
 /// One edit, whose answer is merge's: its id is the request's, so who asked hears it.
 void SemanticNode::on_delete(const LabelRequest& request) {
   if (!labels_.classes().contains(request.of.label)) {
@@ -256,6 +226,10 @@ void SemanticNode::on_delete(const LabelRequest& request) {
   }
   if (!map_receiver_.synced()) {
     return replies_.deny(kRequests, request.id, {Code::kBusy, "the map has not arrived whole; ask again in a second"});
+  }
+  const Operation* before = history_node_.find_deletion(request.id);
+  if (before != nullptr && before->author == request.author) {
+    return replies_.grant(request.id, before->revision, before->count, "deleted since it was asked before");
   }
   const std::vector<VoxelIndex> voxels = view_.voxels_of(request.of);
   if (voxels.empty()) return replies_.deny(kRequests, request.id, {Code::kEmpty, "nothing of it shows in the map"});

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <future>
 #include <map>
 #include <optional>
 #include <string>
@@ -16,6 +17,7 @@
 #include "semantic/labels/label_view.hpp"
 #include "semantic/labels/labels.hpp"
 #include "semantic/labels/margins_node.hpp"
+#include "semantic/map_selection.hpp"
 #include "semantic/semantic_store.hpp"
 
 namespace concord {
@@ -23,8 +25,9 @@ namespace concord {
 /// The semantic process: hears the map and what people say of it; says which voxels show which label.
 class SemanticNode {
  public:
+  /// @param how deferred: what is worked out of models takes no time of the bus's.
   /// @throws std::runtime_error if its store cannot be opened or was damaged.
-  explicit SemanticNode(const NodeContext& context);
+  SemanticNode(const NodeContext& context, std::launch how);
 
   [[nodiscard]] const LabelView& view() const { return view_; }
 
@@ -36,9 +39,6 @@ class SemanticNode {
   void on_delete(const LabelRequest& request);
   void on_query(const LabelQuery& query);
   [[nodiscard]] bool repeat(const LabelRequest& request, std::uint64_t content);
-  [[nodiscard]] Result<std::vector<VoxelIndex>> selected(const LabelRequest& request) const;
-  [[nodiscard]] Result<std::vector<VoxelIndex>> touched(const LabelRequest& request) const;
-  [[nodiscard]] Result<Transform> T_map_frame(const WorkFrame& frame) const;
   [[nodiscard]] Result<Labels::What> check(const LabelRequest& request);
   [[nodiscard]] Result<void> commit(const std::string& id, const std::string& author, std::uint64_t content,
                                     Labels::What what);
@@ -54,14 +54,16 @@ class SemanticNode {
   Labels labels_;
   BrickMap map_;
   LabelView view_;
+  MapSelection selection_;
   BrickReceiver map_receiver_;
   BrickSender label_stream_;
   ListSender<LabelSlot> slot_list_;
   ReplyQueue queue_;
-  std::map<std::string, AgentState> agents_;
   BrickSet dirty_;  ///< the map changed there
   bool has_new_slots_ = true;
   bool begun_ = false;
+  BrickSet edited_;  ///< what merge did changes there what holds
+  EditHistoryNode history_node_;
   AssetsNode assets_node_;
   DetectionsNode detections_node_;
   LabelFilesNode files_node_;

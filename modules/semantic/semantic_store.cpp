@@ -20,7 +20,8 @@ tl::unexpected<Error> damaged(const std::string& what) {
 SemanticStore::SemanticStore(const std::filesystem::path& file, double resolution)
     : database_(file, kSemanticSchema),
       put_(database_.prepare("INSERT INTO corrections VALUES (?,?,?)")),
-      place_(database_.prepare("INSERT OR REPLACE INTO placements VALUES (?,?,?)")) {
+      place_(database_.prepare("INSERT OR REPLACE INTO placements VALUES (?,?,?)")),
+      spend_(database_.prepare("UPDATE thing_numbers SET spent = spent + ? RETURNING spent")) {
   const double kept = kept_resolution(database_, resolution);
   if (std::abs(kept - resolution) <= 1e-9) return;
   throw ConfigError("the labels in this state folder are for " + std::to_string(kept) +
@@ -46,6 +47,14 @@ Result<void> SemanticStore::put(const LabelAnchor& placed) {
   Bytes bytes;
   archive::append_transform(bytes, placed.T_map_agent);
   return place_.run(placed.agent, placed.frame_id, ByteSpan(bytes));
+}
+
+Result<std::int64_t> SemanticStore::take_thing_numbers(std::int64_t count) {
+  spend_.bind(count);
+  std::int64_t spent = 0;
+  const auto done = spend_.for_each_row([&] { spent = spend_.integer(0); });
+  if (!done) return tl::unexpected(done.error());
+  return spent - count + 1;
 }
 
 Result<void> SemanticStore::for_each(const std::function<Result<void>(LabelCorrection)>& visit) {

@@ -22,6 +22,8 @@ class SemanticStore {
   [[nodiscard]] Result<void> put(std::span<const LabelCorrection> corrections);
   /// Where a frame lies from now on. Refused: kIo.
   [[nodiscard]] Result<void> put(const LabelAnchor& placed);
+  /// So many numbers of things that nobody was given before, nor will be: the first. Refused: kIo.
+  [[nodiscard]] Result<std::int64_t> take_thing_numbers(std::int64_t count);
 
   /// In the order of their revisions. Refused (kIo): the file is damaged; and what `visit` refuses.
   [[nodiscard]] Result<void> for_each(const std::function<Result<void>(LabelCorrection)>& visit);
@@ -30,7 +32,7 @@ class SemanticStore {
 
  private:
   Database database_;
-  Statement put_, place_;
+  Statement put_, place_, spend_;
 };
 
 }  // namespace concord

@@ -112,7 +112,7 @@ class Stack {
         : ingest({bus, counters, site, "ingest", bus.now()}),
           merge({bus, counters, site, "merge", bus.now()}),
           planner({bus, counters, site, "planner", bus.now()}, std::launch::deferred),
-          semantic({bus, counters, site, "semantic", bus.now()}),
+          semantic({bus, counters, site, "semantic", bus.now()}, std::launch::deferred),
           robot(bus, counters, {"in/robot1", site.resolution, 5e6, bus.now()}, submap) {
       robot.begin("odom");
     }

@@ -36,10 +36,20 @@ Result<Asset> asset_of(const std::string& name, const YAML::Node& node) {
   return asset;
 }
 
+Result<Asset> entry_of(const YAML::Node& key, const YAML::Node& node) {
+  std::string name;
+  try {
+    name = key.as<std::string>();
+    return asset_of(name, node);
+  } catch (const YAML::Exception& e) {
+    return bad(Code::kMalformed, name + ": " + e.what());
+  }
+}
+
 }  // namespace
 
-Result<std::map<std::string, Asset>> read_asset_folder(const fs::path& folder) {
-  std::map<std::string, Asset> out;
+Result<AssetFolder> read_asset_folder(const fs::path& folder) {
+  AssetFolder out;
   const fs::path file = folder / "assets.yaml";
   std::error_code error;
   if (!fs::exists(file, error)) return out;
@@ -49,9 +59,12 @@ Result<std::map<std::string, Asset>> read_asset_folder(const fs::path& folder) {
     if (!all.IsMap()) return bad(Code::kMalformed, "must be a map of names");
     if (all.size() > kMaxAssets) return bad(Code::kTooLarge, "has over " + std::to_string(kMaxAssets) + " assets");
     for (const auto& entry : all) {
-      auto asset = asset_of(entry.first.as<std::string>(), entry.second);
-      if (!asset) return tl::unexpected(asset.error());
-      out[asset->name] = *asset;
+      auto asset = entry_of(entry.first, entry.second);
+      if (asset) {
+        out.assets[asset->name] = *asset;
+      } else {
+        out.bad.push_back(asset.error());
+      }
     }
   } catch (const YAML::Exception& e) {
     return bad(Code::kMalformed, e.what());

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "core/assets.hpp"
 #include "core/error.hpp"
@@ -13,8 +14,14 @@ namespace concord {
 ///
 ///     pallet: {file: pallet.glb, class: pallet, unit: 0.001}
 ///
-/// `class` is the name and `unit` 1 (metres) where they are left out. No such file: no asset. Refused: anything else in
-/// it (kMalformed), a name that is none or a file outside the folder (kBadName), over kMaxAssets (kTooLarge).
-[[nodiscard]] Result<std::map<std::string, Asset>> read_asset_folder(const std::filesystem::path& folder);
+/// `class` is the name and `unit` 1 (metres) where they are left out. No such file: no asset.
+struct AssetFolder {
+  std::map<std::string, Asset> assets;
+  /// Of entries that are none, and are left out: unknown keys, values that are none (kMalformed), a name that is none
+  /// or a file outside the folder (kBadName).
+  std::vector<Error> bad;
+};
+/// Refused: what is no map of names (kMalformed), over kMaxAssets (kTooLarge).
+[[nodiscard]] Result<AssetFolder> read_asset_folder(const std::filesystem::path& folder);
 
 }  // namespace concord

@@ -1,21 +1,16 @@
 #include "semantic/assets/assets_node.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "bus/messages_label.hpp"
-#include "bus/recent_answers.hpp"
 #include "core/voxel_boxes.hpp"
-#include "semantic/assets/asset_folder.hpp"
-#include "semantic/assets/injections.hpp"
-#include "semantic/models/model_file.hpp"
-#include "semantic/models/solid_voxels.hpp"
 
 namespace concord {
 namespace {
 
 const std::string kRequests = "in/asset";
 constexpr std::int64_t kPeriod = 1'000'000;
-constexpr std::size_t kMostOperations = 10'000;  ///< in one answer of merge's history
 constexpr std::size_t kSentAtOnce = 16;
 
 std::uint64_t content_without_time(AssetRequest request) {
@@ -25,76 +20,100 @@ std::uint64_t content_without_time(AssetRequest request) {
 
 }  // namespace
 
-AssetsNode::AssetsNode(const NodeContext& context, Parts parts)
+AssetsNode::AssetsNode(const NodeContext& context, std::launch how, Parts parts)
     : context_(context),
       parts_(std::move(parts)),
       replies_(context),
-      gltf_(context.site.state / "assets"),
-      list_(context.bus, context.counters, "out/assets", context.site.stream.bytes_per_second),
-      question_("semantic-" + std::to_string(context.boot_id) + "-") {
+      refusals_(context.bus),
+      layouts_(context.bus, how),
+      folder_(context, how) {
   Bus& bus = context_.bus;
   listen<AssetRequest>(bus, context_.counters, context_.process, kRequests,
-                       [this](const std::string&, const AssetRequest& request) { on_request(request); });
+                       [this](const std::string&, const AssetRequest& request) {
+                         if (request.op == AssetRequest::Op::kDelete) return take_out(request);
+                         put(request, content_without_time(request));
+                       });
   listen<Answer>(bus, context_.counters, context_.process, kAnswers,
                  [this](const std::string&, const Answer& answer) { on_answer(answer); });
-  listen<ProcessStatus>(bus, context_.counters, context_.process, "out/status/merge",
-                        [this](const std::string&, const ProcessStatus& status) {
-                          const auto it = status.counters.find("edit_revision");
-                          if (it != status.counters.end()) heard_revision_ = std::max(heard_revision_, it->second);
-                        });
-  listen<HistoryPart>(bus, context_.counters, context_.process, "out/history",
-                      [this](const std::string&, const HistoryPart& part) { on_history(part); });
-  list();
   bus.every(kPeriod, [this] {
-    has_news_ = has_news_ || !history_id_.empty();  // what was not answered in a second is asked again
-    history_id_.clear();
-    ask_history();
+    std::erase_if(sent_, [now = context_.bus.now()](const auto& entry) { return now - entry.second >= 2 * kPeriod; });
     send_waiting();
-    if (const auto written = gltf_.write_next(assets_); !written) context_.counters.refused("assets", written.error());
-    list();
   });
 }
 
-void AssetsNode::list() {
-  auto read = read_asset_folder(context_.site.state / "assets");
-  if (!read) return context_.counters.refused("assets", read.error());
-  assets_ = std::move(*read);
-  std::vector<Asset> all;
-  for (auto& [name, asset] : assets_) {
-    asset.gltf_bytes = gltf_.bytes_of(asset);
-    asset.size = gltf_.size_of(asset);
-    all.push_back(asset);
+const Injections& AssetsNode::injections() const {
+  if (!injections_ || label_revision_ != parts_.labels.revision()) {
+    injections_.emplace(parts_.labels);
+    label_revision_ = parts_.labels.revision();
   }
-  list_.set(all);
+  return *injections_;
 }
 
-void AssetsNode::on_request(const AssetRequest& request, const std::string& remark) {
-  if (request.op == AssetRequest::Op::kDelete) return take_out(request);
-  const std::uint64_t content = content_without_time(request);
-  if (const Labels::Made* before = parts_.labels.find(request.id); before != nullptr && before->content != content) {
-    return replies_.deny(kRequests, request.id, {Code::kExists, "another request had this id; ids must be unique"});
+void AssetsNode::put(const AssetRequest& request, std::uint64_t content, std::optional<Fitting> fitting) {
+  if (ask_again(request.id, content) || refusals_.repeat(request.id, context_.process, content, request.utime)) return;
+  auto model = model_of(request, fitting);
+  if (!model) return refuse_request(request.id, model.error(), content, request.utime);
+  if (!layouts_.has_room()) {
+    return replies_.deny(kRequests, request.id, {Code::kBusy, "other models are being laid out; ask again"});
   }
-  if (ask_again(request)) return;
-  auto claim = claim_of(request);
-  if (!claim) return replies_.deny(kRequests, request.id, claim.error());
+  laid_out_[request.id] = content;
+  layouts_.add(
+      [model = std::move(*model), resolution = context_.site.resolution] {
+        return lay_model(model, resolution).map([](const LaidModel& laid) { return to_bytes(laid); });
+      },
+      [this, request, content, fitting = std::move(fitting)](const Result<Bytes>& reply) {
+        finish(request, content, fitting, reply);
+      });
+}
+
+void AssetsNode::refuse_request(const std::string& id, const Error& error, std::uint64_t content, std::int64_t asked) {
+  refusals_.give(replies_.denied(kRequests, id, error), content, asked);
+}
+
+/// How it lies is known: from here on it is one step, and what was asked of a moved model is looked at again.
+void AssetsNode::finish(AssetRequest request, std::uint64_t content, const std::optional<Fitting>& fitting,
+                        const Result<Bytes>& reply) {
+  laid_out_.erase(request.id);
+  const auto laid = reply.and_then([](const Bytes& bytes) { return laid_model_from_bytes(bytes); });
+  if (!laid) return refuse_request(request.id, laid.error(), content, request.utime);
+  std::string remark;
+  if (fitting) {
+    const auto judged = fitting->judge(laid->fit);
+    if (!judged) return;
+    remark = *judged;
+    request.T_map_asset = laid->fit.T_map_model;
+  }
+  auto claim = claim_of(request, *laid);
+  if (!claim) return refuse_request(request.id, claim.error(), content, request.utime);
   if (const auto done = parts_.commit(request.id, request.author, content, std::move(*claim)); !done) {
-    return replies_.deny(kRequests, request.id, done.error());
+    return refuse_request(request.id, done.error(), content, request.utime);
   }
   asked_[request.id] = remark;
   send_waiting();
 }
 
-bool AssetsNode::ask_again(const AssetRequest& request) {
-  if (parts_.labels.find(request.id) == nullptr) return false;
-  const auto all = parts_.labels.injected();
-  if (std::ranges::find(all, request.id, &Labels::Injected::request_id) == all.end()) {
-    replies_.deny(kRequests, request.id, {Code::kConflict, "it was refused before; ask with another id"});
-    return true;
+bool AssetsNode::ask_again(const std::string& id, std::uint64_t content) {
+  const Labels::Made* before = parts_.labels.find(id);
+  const auto being_laid_out = laid_out_.find(id);
+  const bool is_being_laid_out = before == nullptr && being_laid_out != laid_out_.end();
+  if (before == nullptr && !is_being_laid_out) return false;
+  if ((before != nullptr ? before->content : being_laid_out->second) != content) {
+    replies_.deny(kRequests, id, {Code::kExists, "another request had this id; ids must be unique"});
+  } else if (is_being_laid_out) {
+    answer(context_.bus, {id, context_.process, false, name(Code::kBusy),
+                          "the model is being laid out; ask again with this id in a second", 0, 0});
+  } else if (injections().by_edit(edit_of_asset(id)) == nullptr) {
+    replies_.deny(kRequests, id, {Code::kConflict, "it was refused before; ask with another id"});
+  } else {
+    asked_.try_emplace(id);
+    send_waiting();
+    answer_askers();
   }
-  asked_.try_emplace(request.id);
-  send_waiting();
-  answer_askers();
   return true;
+}
+
+bool AssetsNode::is_under_way(const std::string& request_id) const {
+  return laid_out_.contains(request_id) || parts_.labels.waiting_for(edit_of_asset(request_id)).has_value();
 }
 
 /// Merge answers to our undo, and we to who asked.
@@ -109,84 +128,91 @@ void AssetsNode::take_out(const AssetRequest& request) {
 
 /// What is to be moved or taken out, where it is now.
 Result<Labels::Injected> AssetsNode::meant(const AssetRequest& request) const {
-  for (const auto& [injection, there] : placed(parts_.labels)) {
+  const Labels::Injected* found = nullptr;
+  for (const auto& [injection, there] : injections().placed()) {
     const bool is_meant =
         request.of.empty() ? parts_.labels.owner_of(there.request_id) == request.instance : injection == request.of;
-    if (is_meant) return there;
+    if (is_meant) found = &there;
   }
   // After a restart it is merge that knows what is in the map.
-  if (!is_up_to_date()) {
+  if (found == nullptr && !parts_.history.is_up_to_date()) {
     return refuse(Code::kBusy, "semantic has just begun and does not know all edits yet; ask again");
   }
+  if (found != nullptr && !injections().is_settled(found->edit_id)) {
+    return refuse(Code::kBusy, "it is on its way from one place to another; ask again in a second");
+  }
+  if (found != nullptr) return *found;
   if (!request.of.empty()) return refuse(Code::kNotFound, "nothing that " + request.of + " injected is in the map");
   return refuse(Code::kNotFound, "no asset in the map is instance " + std::to_string(request.instance.instance) +
                                      " of class " + std::to_string(request.instance.label));
 }
 
-Result<LabelCorrection::Claim> AssetsNode::claim_of(const AssetRequest& request) const {
-  LabelRequest label;
+Result<const Asset*> AssetsNode::asset_of(const AssetRequest& request) const {
+  std::string name = request.asset;
   if (request.op == AssetRequest::Op::kMove) {
     const auto there = meant(request);
     if (!there) return tl::unexpected(there.error());
-    const InstanceId of = parts_.labels.owner_of(there->request_id).value_or(there->of);
-    label.name = parts_.labels.classes().at(of.label).name;
-    label.of.instance = of.instance;
-    return claim_of(std::move(label), {there->what.asset, request.T_map_asset, there->edit_id}).map([&](auto claim) {
-      claim.edit_id = edit_of_asset(request.id);
-      return claim;
-    });
+    name = there->what.asset;
   }
-  const auto it = assets_.find(request.asset);
-  if (it == assets_.end()) return refuse(Code::kNotFound, "no asset " + request.asset + "; see: concord asset list");
-  label.name = it->second.class_name;
-  return claim_of(std::move(label), {request.asset, request.T_map_asset, ""}).map([&](auto claim) {
-    claim.edit_id = edit_of_asset(request.id);
-    return claim;
-  });
+  const auto it = assets().find(name);
+  if (it == assets().end()) return refuse(Code::kNotFound, "no asset " + name + "; see: concord asset list");
+  return &it->second;
 }
 
-Result<LabelCorrection::Claim> AssetsNode::claim_of(LabelRequest label, Injection injection) const {
-  const auto it = assets_.find(injection.asset);
-  if (it == assets_.end()) return refuse(Code::kNotFound, "no asset " + injection.asset + "; see: concord asset list");
-  const Asset& asset = it->second;
-  const auto mesh = read_model_file(context_.site.state / "assets" / asset.file);
-  if (!mesh) return tl::unexpected(mesh.error());
-  const auto voxels = voxelize(*mesh, {injection.T_map_asset, asset.unit}, context_.site.resolution, Fill::kSolid);
-  if (!voxels) return tl::unexpected(voxels.error());
-  BrickMasks all = voxels->surface;
-  all.insert(voxels->interior);
-  auto what = parts_.labels.check(label, all.voxels());
+Result<ModelToLay> AssetsNode::model_of(const AssetRequest& request, const std::optional<Fitting>& fitting) const {
+  const auto asset = asset_of(request);
+  if (!asset) return tl::unexpected(asset.error());
+  ModelToLay model{context_.site.state / "assets" / (*asset)->file, (*asset)->unit, request.T_map_asset};
+  if (!fitting) return model;
+  model.surface = fitting->surface;
+  if (request.op == AssetRequest::Op::kMove) model.T_map_present = meant(request)->what.T_map_asset;
+  return model;
+}
+
+Result<LabelCorrection::Claim> AssetsNode::claim_of(const AssetRequest& request, const LaidModel& laid) const {
+  const auto asset = asset_of(request);
+  if (!asset) return tl::unexpected(asset.error());
+  LabelRequest label;
+  label.name = (*asset)->class_name;
+  Injection injection{(*asset)->name, request.T_map_asset, ""};
+  if (request.op == AssetRequest::Op::kMove) {
+    const Labels::Injected there = *meant(request);
+    const InstanceId of = parts_.labels.owner_of(there.request_id).value_or(there.of);
+    label.name = parts_.labels.classes().at(of.label).name;
+    label.of.instance = of.instance;
+    injection.replaces = there.edit_id;
+  }
+  auto what = parts_.labels.check(label, laid.voxels.voxels());
   if (!what) return tl::unexpected(what.error());
   auto claim = std::get<LabelCorrection::Claim>(std::move(*what));
   claim.injection = std::move(injection);
+  claim.edit_id = edit_of_asset(request.id);
   return claim;
 }
 
-/// Merge's word on one of our edits, or on what others asked for: either may be news to its history. An answer's
-/// revision is none of the history's where a map was saved, so only the status says how far that goes.
+/// Merge's word on one of our edits, or on the other half of a move.
 void AssetsNode::on_answer(const Answer& answer) {
-  if (answer.process != "merge" || answer.id.starts_with(question_)) return;
-  has_news_ = true;
+  if (answer.process != "merge") return;
   if (const std::string asked = asked_removal(answer.id); !asked.empty()) {
     concord::answer(context_.bus,
                     {asked, context_.process, answer.ok, answer.code, answer.message, answer.revision, answer.count});
   }
-  if (!answer.ok && answer.code != name(Code::kBusy)) {
-    if (const auto ours = parts_.labels.waiting_for(answer.id)) take_back(*ours, answer);
-    if (const std::string moved = moved_by(answer.id); !moved.empty()) move_back(moved, answer);
-  }
-  ask_history();
+  if (answer.ok || answer.code == name(Code::kBusy)) return;
+  if (const auto ours = parts_.labels.waiting_for(answer.id)) take_back(*ours, answer);
+  if (auto back = reversal(answer.id)) reverse(std::move(*back), answer);
 }
 
-/// The old place could not be left: who asked hears so, and the new one is. Nobody waits after a restart; then it is
-/// tried again until it can.
-void AssetsNode::move_back(const std::string& edit_id, const Answer& why) {
-  for (const Labels::Injected& one : parts_.labels.injected()) {
-    if (one.edit_id != edit_id || asked_.erase(one.request_id) == 0) continue;
-    answer(context_.bus, {one.request_id, context_.process, false, why.code, why.message, 0, 0});
-    const UndoRequest undo{edit_id + ".refused", one.author, edit_id, false, context_.bus.now()};
-    context_.bus.publish("in/undo", encode(undo));
+/// The other half of what a person asked for may not be: neither half is, and who waits hears so.
+void AssetsNode::reverse(UndoRequest back, const Answer& why) {
+  const Labels::Injected* one = injections().by_edit(back.edit_id);
+  if (one == nullptr) return;
+  if (asked_.erase(one->request_id) > 0) {
+    answer(context_.bus, {one->request_id, context_.process, false, why.code, why.message, 0, 0});
   }
+  context_.counters.refused("asset_undo", {Code::kConflict, one->edit_id + " stays as it was: " + why.message});
+  back.author = one->author;
+  back.utime = context_.bus.now();
+  context_.bus.publish("in/undo", encode(back));
 }
 
 /// An injection that merge refused is one that nobody made, but its numbers are spent.
@@ -198,76 +224,51 @@ void AssetsNode::take_back(const Labels::Waiting& refused, const Answer& why) {
   answer(context_.bus, {refused.request_id, context_.process, false, why.code, why.message, 0, 0});
 }
 
-void AssetsNode::ask_history() {
-  if (!history_id_.empty() || (!has_news_ && heard_revision_ <= known_revision_)) return;
-  HistoryRequest request;
-  history_id_ = question_ + std::to_string(++questions_);
-  has_news_ = false;
-  asked_revision_ = heard_revision_;
-  history_.clear();
-  request.id = history_id_;
-  request.after_revision = known_revision_;
-  request.most = kMostOperations;
-  context_.bus.publish("in/history_request", encode(request, context_.bus.now()));
+/// Claims may come later than what merge says of their edits, with a loaded map: all is kept that could be one's.
+void AssetsNode::on_operation(const Operation& operation, BrickSet& touched) {
+  if (const std::string asked = asked_removal(operation.id); !asked.empty()) removed_[asked] = operation.subject;
+  const bool takes_back = operation.kind == Operation::Kind::kUndo,
+             brings_back = operation.kind == Operation::Kind::kRedo;
+  const std::string& edit = takes_back || brings_back ? operation.subject : operation.id;
+  if (!edit.starts_with(edit_of_asset(""))) return;
+  parts_.labels.set_edit(edit, {!takes_back, operation.revision, is_ours(operation.id)}, touched);
+  injections_.reset();
 }
 
-void AssetsNode::on_history(const HistoryPart& part) {
-  if (part.id != history_id_) return;
-  if (!history_.empty() && history_.begin()->second.parts != part.parts) history_.clear();
-  history_[part.part] = part;
-  if (static_cast<std::int32_t>(history_.size()) < part.parts) return;
-  const auto parts = std::exchange(history_, {});
-  history_id_.clear();
-  BrickSet touched;
-  std::size_t count = 0;
-  for (const auto& [number, one] : parts) {
-    count += one.operations.size();
-    for (const Operation& operation : one.operations) {
-      known_revision_ = std::max(known_revision_, operation.revision);
-      if (const std::string asked = asked_removal(operation.id); !asked.empty()) removed_[asked] = operation.subject;
-      const bool takes_back = operation.kind == Operation::Kind::kUndo,
-                 brings_back = operation.kind == Operation::Kind::kRedo;
-      const std::string& edit = takes_back || brings_back ? operation.subject : operation.id;
-      if (parts_.labels.is_edit_of_claim(edit)) {
-        parts_.labels.set_edit(edit, {!takes_back, operation.revision, is_ours(operation.id)}, touched);
-      }
-    }
-  }
-  if (count < kMostOperations) {
-    known_revision_ = std::max(known_revision_, asked_revision_);
-  } else {
-    has_news_ = true;
-  }
-  parts_.refresh(touched);
+void AssetsNode::on_told() {
   send_waiting();
   answer_askers();
-  ask_history();
 }
 
 void AssetsNode::answer_askers() {
-  if (asked_.empty() || !is_up_to_date()) return;
-  for (const Labels::Injected& one : parts_.labels.injected()) {
-    const auto asker = asked_.find(one.request_id);
-    if (asker == asked_.end() || !one.edit || !has_moved(one, parts_.labels)) continue;
-    const std::string& class_name = parts_.labels.classes().at(one.of.label).name;
-    LabelInstance instance = parts_.instance(one.of);
-    instance.asset = one.what.asset;
-    context_.bus.publish("out/label_list", encode(LabelList{one.request_id, 0, 1, {instance}}, context_.bus.now()));
-    replies_.grant(
-        one.request_id, parts_.labels.find(one.request_id)->revision, one.count,
-        class_name + " " + std::to_string(one.of.instance) + " is put in" + asker->second + "; edit " + one.edit_id);
-    asked_.erase(asker);
+  if (asked_.empty() || !parts_.history.is_up_to_date()) return;
+  for (auto asker = asked_.begin(); asker != asked_.end();) {
+    const Labels::Injected* one = injections().by_edit(edit_of_asset(asker->first));
+    if (one == nullptr || !one->edit || !injections().is_settled(one->edit_id)) {
+      ++asker;
+      continue;
+    }
+    LabelInstance instance = parts_.instance(one->of);
+    instance.asset = one->what.asset;
+    context_.bus.publish("out/label_list", encode(LabelList{one->request_id, 0, 1, {instance}}, context_.bus.now()));
+    replies_.grant(one->request_id, parts_.labels.find(one->request_id)->revision, one->count,
+                   class_of(*one) + " " + std::to_string(one->of.instance) + " is put in" + asker->second + "; edit " +
+                       one->edit_id);
+    asker = asked_.erase(asker);
   }
 }
 
-/// Not before all that merge has is known: what it took long ago must not be asked again and again.
+/// Not before all that merge has is known: what it took long ago must not be asked again and again. And each but once a
+/// second, whatever merge answers: a refusal would be asked for at the speed of the bus.
 void AssetsNode::send_waiting() {
-  if (!is_up_to_date()) return;
-  for (UndoRequest& undo : due(parts_.labels)) {
+  if (!parts_.history.is_up_to_date()) return;
+  for (UndoRequest& undo : injections().due()) {
+    if (!may_send(undo.id)) continue;
     undo.utime = context_.bus.now();
     context_.bus.publish("in/undo", encode(undo));
   }
   for (const Labels::Waiting& waiting : parts_.labels.waiting(kSentAtOnce)) {
+    if (!may_send(waiting.edit_id)) continue;
     EditRequest edit;
     edit.id = waiting.edit_id;
     edit.author = waiting.author;
@@ -275,6 +276,15 @@ void AssetsNode::send_waiting() {
     edit.utime = waiting.utime;  // sent again, it is the same to the byte
     context_.bus.publish("in/edit", encode(edit));
   }
+}
+
+bool AssetsNode::may_send(const std::string& id) {
+  const std::int64_t now = context_.bus.now();
+  const auto [it, is_first] = sent_.try_emplace(id, now);
+  if (is_first) return true;
+  if (now - it->second < kPeriod) return false;
+  it->second = now;
+  return true;
 }
 
 }  // namespace concord

@@ -1,81 +1,101 @@
 #pragma once
 
 #include <functional>
+#include <future>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "bus/messages_asset.hpp"
 #include "bus/process.hpp"
+#include "bus/recent_answers.hpp"
 #include "bus/replies.hpp"
-#include "semantic/assets/gltf_store.hpp"
+#include "semantic/assets/asset_folder_node.hpp"
+#include "semantic/assets/injections.hpp"
+#include "semantic/assets/lay_model.hpp"
+#include "semantic/edit_history_node.hpp"
 #include "semantic/labels/labels.hpp"
+#include "semantic/work_queue.hpp"
 
 namespace concord {
 
-/// Puts models into the map. The intent is stored first: a label of the model's voxels that holds while the edit
-/// asset-ID does. Then the edit is sent to merge, again each second until merge has answered, also after a restart of
-/// either. Who undoes that edit undoes the injection, label and all.
+/// Puts models into the map. Where a model lies is worked out beside the bus; who asks again meanwhile is told kBusy.
+/// The intent is stored first: a label of the model's voxels that holds while the edit asset-ID does. Then the edit is
+/// sent to merge, again each second until merge has answered, also after a restart of either. Who undoes that edit
+/// undoes the injection, label and all.
 ///
 /// One that is moved is an edit in its new place and an undo of the one in its old (injections.hpp): the second is
 /// asked for when merge has the first, each second until it is so; refused, the first is undone.
-///
-/// Which edits hold is merge's to say: its history is asked for what is after the revision that is known, whenever
-/// merge has answered somebody or its status shows a later one.
 class AssetsNode {
  public:
   struct Parts {
     Labels& labels;
+    const EditHistoryNode& history;
     /// Stores and applies a label correction. Refused: kIo.
     std::function<Result<void>(const std::string& id, const std::string& author, std::uint64_t content, Labels::What)>
         commit;
-    std::function<void(const BrickSet&)> refresh;
     /// How an instance shows in the map.
     std::function<LabelInstance(InstanceId)> instance;
   };
 
-  AssetsNode(const NodeContext& context, Parts parts);
+  /// @param how deferred: models are laid out while the bus waits, so that on log time it takes none.
+  AssetsNode(const NodeContext& context, std::launch how, Parts parts);
   AssetsNode(const AssetsNode&) = delete;
   AssetsNode& operator=(const AssetsNode&) = delete;
 
-  /// Somebody asks, be it by way of a detection; what the answer says of it besides.
-  void on_request(const AssetRequest& request, const std::string& remark = "");
-  /// Whether this injection was asked before, wherever it was to go; it is then answered as that one.
-  [[nodiscard]] bool ask_again(const AssetRequest& request);
-  [[nodiscard]] const std::map<std::string, Asset>& assets() const { return assets_; }
-  /// Whether all is known that merge has said it holds.
-  [[nodiscard]] bool is_up_to_date() const { return heard_revision_ >= 0 && known_revision_ >= heard_revision_; }
+  /// How a model comes to lie that is put where something was seen.
+  struct Fitting {
+    /// See ModelToLay; asked for in another process.
+    std::function<BrickMasks(const BrickMasks& present)> surface;
+    /// What the answer says of the fit besides; nothing: it is not to be put there, and nobody waits for an answer.
+    std::function<std::optional<std::string>(const ObjectFit&)> judge;
+  };
+  /// @param request kInject or kMove. @param content tells requests of one id apart.
+  void put(const AssetRequest& request, std::uint64_t content, std::optional<Fitting> fitting = {});
+  /// Whether this was asked before; it is then answered as that was, or refused (kExists) if it was something else.
+  [[nodiscard]] bool ask_again(const std::string& id, std::uint64_t content);
+  /// Whether it is asked for and neither in the map nor refused yet.
+  [[nodiscard]] bool is_under_way(const std::string& request_id) const;
+
+  /// Merge did something; all was told that it did until now.
+  void on_operation(const Operation& operation, BrickSet& touched);
+  void on_told();
+
+  [[nodiscard]] const std::map<std::string, Asset>& assets() const { return folder_.assets(); }
+  [[nodiscard]] const Injections& injections() const;
+  /// What it is called now.
+  [[nodiscard]] const std::string& class_of(const Labels::Injected& injected) const {
+    return parts_.labels.classes().at(injected.of.label).name;
+  }
 
  private:
-  void put(const AssetRequest& request, std::uint64_t content);
   void take_out(const AssetRequest& request);
   [[nodiscard]] Result<Labels::Injected> meant(const AssetRequest& request) const;
-  [[nodiscard]] Result<LabelCorrection::Claim> claim_of(const AssetRequest& request) const;
-  [[nodiscard]] Result<LabelCorrection::Claim> claim_of(LabelRequest label, Injection injection) const;
+  [[nodiscard]] Result<const Asset*> asset_of(const AssetRequest& request) const;
+  [[nodiscard]] Result<ModelToLay> model_of(const AssetRequest& request, const std::optional<Fitting>& fitting) const;
+  void finish(AssetRequest request, std::uint64_t content, const std::optional<Fitting>& fitting,
+              const Result<Bytes>& reply);
+  [[nodiscard]] Result<LabelCorrection::Claim> claim_of(const AssetRequest& request, const LaidModel& laid) const;
+  void refuse_request(const std::string& id, const Error& error, std::uint64_t content, std::int64_t asked);
   void on_answer(const Answer& answer);
-  void on_history(const HistoryPart& part);
-  void ask_history();
   void take_back(const Labels::Waiting& refused, const Answer& why);
-  void move_back(const std::string& edit_id, const Answer& why);
+  void reverse(UndoRequest back, const Answer& why);
   void answer_askers();
   void send_waiting();
-  void list();
+  [[nodiscard]] bool may_send(const std::string& id);
 
   NodeContext context_;
   Parts parts_;
   Replies replies_;
-  GltfStore gltf_;
-  ListSender<Asset> list_;
-  std::map<std::string, Asset> assets_;
-  std::map<std::string, std::string> asked_;    ///< requests whose askers wait for an answer; the remark in it
-  std::map<std::string, std::string> removed_;  ///< the edits that requests took out
-  std::int64_t known_revision_ = 0;             ///< of merge's history
-  std::int64_t heard_revision_ = -1;            ///< of merge's history, by its status
-  std::int64_t asked_revision_ = -1;            ///< what was heard when it was asked last: the answer reaches as far
-  bool has_news_ = false;                       ///< merge has answered somebody since it was asked last
-  std::string question_;                        ///< what the ids of our questions begin with
-  std::int64_t questions_ = 0;
-  std::string history_id_;  ///< of the question that is open; empty: none
-  std::map<std::int32_t, HistoryPart> history_;
+  RecentAnswers refusals_;
+  WorkQueue layouts_;
+  AssetFolderNode folder_;
+  std::map<std::string, std::uint64_t> laid_out_;  ///< requests whose models are, and their content
+  std::map<std::string, std::string> asked_;       ///< requests whose askers wait for an answer; the remark in it
+  std::map<std::string, std::string> removed_;     ///< the edits that requests took out
+  std::map<std::string, std::int64_t> sent_;       ///< when what was asked of merge was asked last
+  mutable std::optional<Injections> injections_;   ///< as of the revisions below
+  mutable std::int64_t label_revision_ = -1;
 };
 
 }  // namespace concord

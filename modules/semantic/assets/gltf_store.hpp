@@ -2,18 +2,21 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "core/assets.hpp"
 #include "core/error.hpp"
+#include "semantic/models/child_work.hpp"
 
 namespace concord {
 
 /// The models of the asset folder as headsets load them: FOLDER/gltf/NAME.glb, in metres, in the axes of the model's
-/// own file, so that a placement is one for these too.
+/// own file, so that a placement is one for these too. What each was made of stands in FOLDER/gltf/made.yaml, so that
+/// it is not made again.
 class GltfStore {
  public:
-  explicit GltfStore(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  explicit GltfStore(std::filesystem::path folder);
 
   /// Bytes of the asset's file; 0 if there is none of the model as it is.
   [[nodiscard]] std::int64_t bytes_of(const Asset& asset) const;
@@ -21,30 +24,41 @@ class GltfStore {
   /// Of the box around the model along its file's axes, metres; 0 if it is not known of the model as it is.
   [[nodiscard]] Eigen::Vector3d size_of(const Asset& asset) const;
 
-  /// Writes the first that is not there, or not of its model as it is; a model that cannot be read is not tried again
-  /// until it changes. Takes as long as reading a model. Refused: what read_model_file refuses, and kIo.
-  [[nodiscard]] Result<void> write_next(const std::map<std::string, Asset>& assets);
-
- private:
-  /// What a file was made of.
+  /// What a file is made of.
   struct Source {
-    std::filesystem::file_time_type written;
+    std::string file;
+    std::int64_t written = 0;  ///< by the file system's clock
+    std::int64_t bytes = 0;
     double unit = 0;
     bool operator==(const Source&) const = default;
   };
-  [[nodiscard]] std::filesystem::path file_of(const Asset& asset) const {
-    return folder_ / "gltf" / (asset.name + ".glb");
-  }
-  struct Tried {
+  [[nodiscard]] Source source_of(const Asset& asset) const;
+
+  /// The first that has none, or none of its model as it is. Not one that could not be read, until it changes.
+  [[nodiscard]] const Asset* next(const std::map<std::string, Asset>& assets) const;
+  /// Writes the file, in a process of its own. Refused: read_model_file, kIo.
+  [[nodiscard]] ChildWork::Work work_for(const Asset& asset) const;
+  /// What came of that. Refused: what it refused, and kIo, where what was made cannot be noted.
+  [[nodiscard]] Result<void> note(const std::string& name, const Source& source, const Result<Bytes>& reply);
+  /// Removes what was made of assets that are gone. Refused: kIo.
+  [[nodiscard]] Result<void> keep_only(const std::map<std::string, Asset>& assets);
+
+ private:
+  struct Made {
     Source source;
     Eigen::Vector3d size = Eigen::Vector3d::Zero();
+    bool is_readable = true;
   };
-  [[nodiscard]] Source source_of(const Asset& asset) const;
+  [[nodiscard]] std::filesystem::path file_of(const std::string& name) const {
+    return folder_ / "gltf" / (name + ".glb");
+  }
   /// Null: not tried as it is.
-  [[nodiscard]] const Tried* tried(const Asset& asset) const;
+  [[nodiscard]] const Made* made_of(const Asset& asset) const;
+  void read_notes();
+  [[nodiscard]] Result<void> write_notes() const;
 
   std::filesystem::path folder_;
-  std::map<std::string, Tried> tried_;  ///< since this start
+  std::map<std::string, Made> made_;
 };
 
 }  // namespace concord

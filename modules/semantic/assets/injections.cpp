@@ -1,72 +1,99 @@
 #include "semantic/assets/injections.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "core/assets.hpp"
 
 namespace concord {
 namespace {
 
-const std::string kOld = ".old@", kBack = ".back@", kGone = "asset.gone@";
-
-using ByEdit = std::map<std::string, Labels::Injected>;
-
-ByEdit by_edit(const Labels& labels) {
-  ByEdit out;
-  for (Labels::Injected& one : labels.injected()) out.emplace(one.edit_id, std::move(one));
-  return out;
-}
-
-/// The edit by which it came into the map first.
-std::string root_of(const Labels::Injected& injected, const ByEdit& all) {
-  const Labels::Injected* at = &injected;
-  for (std::size_t steps = 0; steps < all.size(); ++steps) {  // a file may say that two replaced one another
-    const auto before = all.find(at->what.replaces);
-    if (before == all.end()) break;
-    at = &before->second;
-  }
-  return at->edit_id;
-}
+const std::string kOld = ".old@", kBack = ".back@", kGone = "asset.gone@", kRefused = ".refused";
 
 }  // namespace
 
-std::map<std::string, Labels::Injected> placed(const Labels& labels) {
-  const ByEdit all = by_edit(labels);
+Injections::Injections(const Labels& labels) {
+  for (Labels::Injected& one : labels.injected()) by_edit_.emplace(one.edit_id, std::move(one));
+  find_families();
   const std::size_t prefix = edit_of_asset("").size();
-  std::map<std::string, Labels::Injected> out;
-  for (const auto& [edit_id, one] : all) {
-    if (!one.edit || !one.edit->active) continue;
-    const std::string root = root_of(one, all);
-    if (root.size() <= prefix) continue;
-    const auto [it, is_first] = out.try_emplace(root.substr(prefix), one);
-    if (!is_first && one.edit->revision > it->second.edit->revision) it->second = one;
+  for (const auto& [root, family] : families_) {
+    const std::string there = active_in(family);
+    if (!there.empty() && root.size() > prefix) placed_.emplace(root.substr(prefix), by_edit_.at(there));
   }
-  return out;
 }
 
-std::optional<Labels::Injected> where_is(const std::string& request_id, const Labels& labels) {
-  const auto all = placed(labels);
-  const auto it = all.find(request_id);
-  return it != all.end() ? std::optional(it->second) : std::nullopt;
+/// A file may say that two replaced one another: they are one family, as any others that hang together.
+void Injections::find_families() {
+  for (const auto& [edit_id, one] : by_edit_) {
+    std::set<std::string> walked;
+    std::string at = edit_id;
+    while (!root_.contains(at) && walked.insert(at).second) {
+      const std::string& before = by_edit_.at(at).what.replaces;
+      if (!by_edit_.contains(before)) break;
+      at = before;
+    }
+    const std::string root = root_.contains(at) ? root_.at(at) : at;
+    for (const std::string& step : walked) root_[step] = root;
+  }
+  for (const auto& [edit_id, root] : root_) families_[root].push_back(edit_id);
 }
 
-bool has_moved(const Labels::Injected& injected, const Labels& labels) {
-  if (injected.what.replaces.empty() || !injected.edit || !injected.edit->active) return true;
-  const ByEdit all = by_edit(labels);
-  const auto before = all.find(injected.what.replaces);
-  return before == all.end() || !before->second.edit || !before->second.edit->active;
+const Labels::Injected* Injections::by_edit(const std::string& edit_id) const {
+  const auto it = by_edit_.find(edit_id);
+  return it != by_edit_.end() ? &it->second : nullptr;
 }
 
-std::vector<UndoRequest> due(const Labels& labels) {
-  const ByEdit all = by_edit(labels);
+const Labels::EditState* Injections::state_of(const std::string& edit_id) const {
+  const Labels::Injected* one = by_edit(edit_id);
+  return one != nullptr && one->edit ? &*one->edit : nullptr;
+}
+
+/// The place that it came to last, of those that it has; empty: none.
+std::string Injections::active_in(const Family& family) const {
+  std::string last;
+  for (const std::string& edit_id : family) {
+    const Labels::EditState* state = state_of(edit_id);
+    if (state == nullptr || !state->active) continue;
+    if (last.empty() || state->revision > state_of(last)->revision) last = edit_id;
+  }
+  return last;
+}
+
+bool Injections::is_settled(const std::string& edit_id) const {
+  const Labels::EditState* state = state_of(edit_id);
+  if (state == nullptr || !state->active) return true;
+  return std::ranges::count_if(families_.at(root_.at(edit_id)), [this](const std::string& other) {
+           const Labels::EditState* there = state_of(other);
+           return there != nullptr && there->active;
+         }) == 1;
+}
+
+void Injections::add_due(const Family& family, std::vector<UndoRequest>& out) const {
+  const std::string there = active_in(family);
+  if (!there.empty()) {
+    const Labels::Injected& kept = by_edit_.at(there);
+    for (const std::string& edit_id : family) {
+      const Labels::EditState* state = state_of(edit_id);
+      if (edit_id == there || state == nullptr || !state->active) continue;
+      const std::string id = there + kOld + std::to_string(kept.edit->revision) + "-" + std::to_string(state->revision);
+      out.push_back({id, kept.author, edit_id, false, 0});
+    }
+    return;
+  }
+  const Labels::Injected* last = nullptr;
+  for (const std::string& edit_id : family) {
+    const Labels::Injected& one = by_edit_.at(edit_id);
+    if (one.edit && (last == nullptr || one.edit->revision > last->edit->revision)) last = &one;
+  }
+  if (last == nullptr || last->edit->by_us || state_of(last->what.replaces) == nullptr) return;
+  out.push_back(
+      {last->edit_id + kBack + std::to_string(last->edit->revision), last->author, last->what.replaces, true, 0});
+}
+
+std::vector<UndoRequest> Injections::due() const {
   std::vector<UndoRequest> out;
-  for (const auto& [edit_id, one] : all) {
-    const auto before = all.find(one.what.replaces);
-    if (before == all.end() || !one.edit || !before->second.edit) continue;
-    const Labels::EditState &now = *one.edit, &old = *before->second.edit;
-    if (now.by_us || now.active != old.active || now.revision < old.revision) continue;
-    const std::string id = edit_id + (now.active ? kOld : kBack) + std::to_string(now.revision);
-    out.push_back({id, one.author, before->first, !now.active, 0});
+  for (const auto& [root, family] : families_) {
+    if (family.size() > 1) add_due(family, out);
   }
   return out;
 }
@@ -85,9 +112,13 @@ std::string asked_removal(const std::string& request_id) {
   return request_id.starts_with(kGone) ? request_id.substr(kGone.size()) : std::string();
 }
 
-std::string moved_by(const std::string& request_id) {
-  const std::size_t end = request_id.rfind(kOld);
-  return is_ours(request_id) && end != std::string::npos ? request_id.substr(0, end) : std::string();
+std::optional<UndoRequest> reversal(const std::string& refused_id) {
+  if (!is_ours(refused_id) || refused_id.ends_with(kRefused)) return std::nullopt;
+  const std::size_t old = refused_id.rfind(kOld), back = refused_id.rfind(kBack);
+  const bool was_to_leave = old != std::string::npos && (back == std::string::npos || old > back);
+  const std::size_t end = was_to_leave ? old : back;
+  if (end == std::string::npos) return std::nullopt;  // a removal
+  return UndoRequest{refused_id + kRefused, "", refused_id.substr(0, end), !was_to_leave, 0};
 }
 
 }  // namespace concord

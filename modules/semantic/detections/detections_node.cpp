@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-
-#include "semantic/assets/injections.hpp"
-#include "semantic/models/model_file.hpp"
+#include <set>
 
 namespace concord {
 namespace {
@@ -13,6 +11,12 @@ namespace {
 const std::string kSeen = "in/detection", kDecisions = "in/detection_decision";
 constexpr std::int64_t kPeriod = 1'000'000;
 constexpr double kLeastScore = 0.5;
+constexpr std::int64_t kNumbersAtOnce = 100;
+
+std::uint64_t content_without_time(DetectionDecision decision) {
+  decision.utime = 0;
+  return content_of(encode(decision));
+}
 
 std::string words(const ObjectFit& fit) {
   char out[160];
@@ -30,6 +34,7 @@ DetectionsNode::DetectionsNode(const NodeContext& context, Parts parts)
       parts_(std::move(parts)),
       replies_(context),
       answers_(context.bus),
+      sightings_([this] { return next_number(); }),
       list_(context.bus, context.counters, "out/things", context.site.stream.bytes_per_second) {
   listen<Detection>(context_.bus, context_.counters, context_.process, kSeen,
                     [this](const std::string&, const Detection& detection) { on_detection(detection); });
@@ -64,14 +69,14 @@ Result<Sightings::Seen> DetectionsNode::see(const Detection& detection) {
   }
   const auto asset = asset_called(detection.asset);
   if (!asset) return tl::unexpected(asset.error());
-  const auto T_map_frame = parts_.T_map_frame(detection.frame);
+  const auto T_map_frame = parts_.selection.T_map_frame(detection.frame);
   if (!T_map_frame) return tl::unexpected(T_map_frame.error());
   const Transform T_map_asset = *T_map_frame * detection.T_frame_asset;
   if (T_map_asset.translation().cwiseAbs().maxCoeff() >= kMaxVoxel * context_.site.resolution) {
     return refuse(Code::kOutOfBounds, "it lies beyond the map's bounds");
   }
   follow_injections();
-  return sightings_.see(detection, (*asset)->name, (*asset)->class_name, T_map_asset);
+  return sightings_.see(detection, (*asset)->name, (*asset)->class_name, T_map_asset, context_.bus.now());
 }
 
 Result<const Asset*> DetectionsNode::asset_called(const std::string& name) const {
@@ -87,68 +92,106 @@ Result<const Asset*> DetectionsNode::asset_called(const std::string& name) const
   return found;
 }
 
+/// Taken from the store a hundred at a time: what a person says of a thing from before a restart is not said of
+/// another.
+Result<std::int64_t> DetectionsNode::next_number() {
+  if (number_ > last_number_) {
+    const auto taken = parts_.store.take_thing_numbers(kNumbersAtOnce);
+    if (!taken) return taken;
+    number_ = *taken;
+    last_number_ = *taken + kNumbersAtOnce - 1;
+  }
+  return number_++;
+}
+
 void DetectionsNode::on_decision(const DetectionDecision& decision) {
+  const std::uint64_t content = content_without_time(decision);
+  if (parts_.assets.ask_again(decision.id, content)) return;
+  if (answers_.repeat(decision.id, context_.process, content, decision.utime)) return;
   follow_injections();
-  const Thing* thing = sightings_.find(decision.thing);
-  const auto under_way = confirmed_.find(decision.id);
-  if (thing == nullptr) {
-    return replies_.deny(kDecisions, decision.id,
-                         {Code::kNotFound, "no thing " + std::to_string(decision.thing) + "; see: concord things"});
-  }
-  const bool is_repeat = thing->injection == decision.id || under_way != confirmed_.end();
-  if (!thing->injection.empty() && !is_repeat) {
-    return replies_.deny(
-        kDecisions, decision.id,
-        {Code::kConflict, "it is confirmed, by " + thing->injection + "; concord asset delete takes it out"});
-  }
-  if (decision.op == DetectionDecision::Op::kConfirm) return confirm(decision, *thing);
+  const auto thing = open_thing(decision);
+  if (!thing) return answers_.give(replies_.denied(kDecisions, decision.id, thing.error()), content, decision.utime);
+  if (decision.op == DetectionDecision::Op::kConfirm) return confirm(decision, content, **thing);
   sightings_.drop(decision.thing);
   list_.set(sightings_.list());
-  replies_.grant(decision.id, 0, 1, "dropped");
+  answers_.give(replies_.granted(decision.id, 0, 1, "dropped"), content);
+}
+
+/// What nobody has decided on yet.
+Result<const Thing*> DetectionsNode::open_thing(const DetectionDecision& decision) const {
+  const Thing* thing = sightings_.find(decision.thing);
+  if (thing == nullptr) {
+    return refuse(Code::kNotFound, "no thing " + std::to_string(decision.thing) + "; see: concord things");
+  }
+  if (!thing->injection.empty()) {
+    return refuse(Code::kConflict, "it is confirmed, by " + thing->injection + "; concord asset delete takes it out");
+  }
+  const auto other = std::ranges::find(confirmed_, decision.thing, [](const auto& entry) { return entry.second; });
+  if (other != confirmed_.end()) return refuse(Code::kConflict, "it is just being confirmed, by " + other->first);
+  return thing;
 }
 
 /// The assets' node answers, with how well it fits. Asked again, the place that was found first holds.
-void DetectionsNode::confirm(const DetectionDecision& decision, const Thing& thing) {
+void DetectionsNode::confirm(const DetectionDecision& decision, std::uint64_t content, const Thing& thing) {
   AssetRequest request;
   request.id = decision.id;
   request.author = decision.author;
   request.asset = thing.asset;
+  request.T_map_asset = thing.T_map_asset;
   request.utime = decision.utime;
-  if (parts_.assets.ask_again(request)) return;
-  const auto fit = fitted(thing.asset, thing.T_map_asset);
-  if (!fit) return replies_.deny(kDecisions, decision.id, fit.error());
-  request.T_map_asset = fit->T_map_model;
   confirmed_[decision.id] = thing.number;
-  parts_.assets.on_request(request, words(*fit));
+  parts_.assets.put(request, content,
+                    AssetsNode::Fitting{[this](const BrickMasks&) { return occupied_of(parts_.map); },
+                                        [](const ObjectFit& fit) { return words(fit); }});
 }
 
+/// Whoever sees it elsewhere may be off: what fits where it lies already is not moved. The model's own voxels are
+/// occupied, and would hold it where it is.
 void DetectionsNode::move(const Thing& thing, const Transform& T_map_asset) {
-  const auto fit = fitted(thing.asset, T_map_asset);
-  if (!fit) return context_.counters.refused(kSeen, fit.error());
   AssetRequest request;
   request.id = "seen-" + std::to_string(thing.number) + "-" + std::to_string(context_.bus.now());
   request.author = thing.author;
   request.op = AssetRequest::Op::kMove;
   request.of = thing.injection;
-  request.T_map_asset = fit->T_map_model;
+  request.T_map_asset = T_map_asset;
   request.utime = context_.bus.now();
-  parts_.assets.on_request(request, words(*fit));
+  const auto judge = [this, number = thing.number](const ObjectFit& fit) -> std::optional<std::string> {
+    const Thing* now = sightings_.find(number);
+    if (now == nullptr) return std::nullopt;
+    if (!is_same_place(now->T_map_asset, fit.T_map_model)) return words(fit);
+    sightings_.seen_there(number);
+    return std::nullopt;
+  };
+  parts_.assets.put(request, content_of(encode(request)),
+                    AssetsNode::Fitting{[this](const BrickMasks& present) { return surface_without(present); }, judge});
 }
 
-Result<ObjectFit> DetectionsNode::fitted(const std::string& asset, const Transform& T_map_asset) const {
-  const auto it = parts_.assets.assets().find(asset);
-  if (it == parts_.assets.assets().end()) return refuse(Code::kNotFound, "no asset " + asset + " any more");
-  return read_model_file(context_.site.state / "assets" / it->second.file)
-      .and_then(
-          [&](const TriangleMesh& mesh) { return surface_points(mesh, it->second.unit, context_.site.resolution); })
-      .map([&](const std::vector<Eigen::Vector3d>& points) {
-        return fit_object(points, occupied_of(parts_.map), context_.site.resolution, T_map_asset);
-      });
+/// What is occupied, but of the voxels of the model itself only those that somebody sees.
+BrickMasks DetectionsNode::surface_without(const BrickMasks& present) {
+  BrickMasks unseen;
+  for (const VoxelIndex voxel : present.voxels()) {
+    if (!is_seen(voxel)) unseen.insert(voxel);
+  }
+  BrickMasks surface = occupied_of(parts_.map);
+  surface.erase(unseen);
+  return surface;
+}
+
+bool DetectionsNode::is_seen(VoxelIndex voxel) const {
+  const Eigen::Vector3d p_map = centre_of(voxel, context_.site.resolution);
+  return std::ranges::any_of(parts_.layers.now(), [&](const auto& entry) {
+    const AgentLayer& layer = entry.second;
+    if (!layer.T_map_agent) return false;
+    return is_occupied(layer.map.at(voxel_of(layer.T_map_agent->inverse() * p_map, context_.site.resolution)));
+  });
 }
 
 /// Where things are that are in the map is for the labels to say: people move them, take them out, bring them back.
 void DetectionsNode::follow_injections() {
-  const auto all = placed(parts_.labels);
+  const auto& all = parts_.assets.injections().placed();
+  std::erase_if(confirmed_, [&](const auto& entry) {
+    return !all.contains(entry.first) && !parts_.assets.is_under_way(entry.first);  // it was refused
+  });
   std::set<std::string> followed;
   for (const Thing& thing : sightings_.list()) {
     if (thing.injection.empty()) continue;
@@ -169,8 +212,7 @@ void DetectionsNode::follow_injections() {
       sightings_.put(under_way->second, injection, there.what.T_map_asset);
       confirmed_.erase(under_way);
     } else {
-      sightings_.add(there.what.asset, parts_.labels.classes().at(there.of.label).name, injection,
-                     there.what.T_map_asset);
+      sightings_.add(there.what.asset, parts_.assets.class_of(there), injection, there.what.T_map_asset);
     }
   }
 }

@@ -1,6 +1,7 @@
 #include "semantic/detections/sightings.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 namespace concord {
 namespace {
@@ -23,6 +24,8 @@ Transform between(const Transform& a, const Transform& b, double share) {
 
 }  // namespace
 
+bool is_same_place(const Transform& a, const Transform& b) { return distance(a, b) <= kMoved && turn(a, b) <= kTurned; }
+
 Sightings::Kept* Sightings::thing_of(const Detection& detection, const std::string& asset,
                                      const Transform& T_map_asset) {
   if (const auto known = followed_.find({detection.author, detection.object}); known != followed_.end()) {
@@ -35,6 +38,7 @@ Sightings::Kept* Sightings::thing_of(const Detection& detection, const std::stri
     if (kept.thing.asset != asset) continue;
     double away = distance(kept.thing.T_map_asset, T_map_asset);
     if (kept.agreeing > 0) away = std::min(away, distance(kept.elsewhere, T_map_asset));
+    if (kept.seen_at) away = std::min(away, distance(*kept.seen_at, T_map_asset));
     if (away < least) least = away, nearest = &kept;
   }
   return nearest;
@@ -50,17 +54,45 @@ bool Sightings::make_room() {
   return true;
 }
 
+Result<Sightings::Kept*> Sightings::add_thing(const std::string& asset, const Transform& T_map_asset) {
+  if (!make_room()) return refuse(Code::kTooLarge, "no more things can be told apart; drop some");
+  const auto number = next_number_();
+  if (!number) return tl::unexpected(number.error());
+  Kept& kept = things_[*number];
+  kept.thing.number = *number;
+  kept.thing.asset = asset;
+  kept.thing.T_map_asset = T_map_asset;
+  return &kept;
+}
+
+/// Who follows it has one name for it, the latest.
+void Sightings::follow(const Detection& detection, Kept& kept) {
+  if (detection.object.empty()) return;
+  const std::pair key(detection.author, detection.object);
+  if (const auto was = followed_.find(key); was != followed_.end()) things_.at(was->second).names.erase(key.first);
+  if (const auto before = kept.names.find(detection.author); before != kept.names.end()) followed_.erase(*before);
+  kept.names[detection.author] = detection.object;
+  followed_[key] = kept.thing.number;
+  if (kept.names.size() <= kMostFollowers) return;
+  const auto other = kept.names.begin()->first != detection.author ? kept.names.begin() : std::next(kept.names.begin());
+  followed_.erase(*other);
+  kept.names.erase(other);
+}
+
+bool Sightings::lies_at(const Kept& kept, const Transform& T_map_asset) {
+  return is_same_place(kept.thing.T_map_asset, T_map_asset) ||
+         (kept.seen_at && is_same_place(*kept.seen_at, T_map_asset));
+}
+
 Result<Sightings::Seen> Sightings::see(const Detection& detection, const std::string& asset,
-                                       const std::string& class_name, const Transform& T_map_asset) {
+                                       const std::string& class_name, const Transform& T_map_asset, std::int64_t now) {
   Kept* kept = thing_of(detection, asset, T_map_asset);
   Seen seen;
   if (kept == nullptr) {
-    if (!make_room()) return refuse(Code::kTooLarge, "no more things can be told apart; drop some");
+    const auto added = add_thing(asset, T_map_asset);
+    if (!added) return tl::unexpected(added.error());
+    kept = *added;
     seen.is_new = true;
-    kept = &things_[++last_number_];
-    kept->thing.number = last_number_;
-    kept->thing.asset = asset;
-    kept->thing.T_map_asset = T_map_asset;
   }
   Thing& thing = kept->thing;
   seen.number = thing.number;
@@ -69,24 +101,23 @@ Result<Sightings::Seen> Sightings::see(const Detection& detection, const std::st
   thing.sightings = std::min(thing.sightings, 1 << 30) + 1;
   thing.last_seen = std::max(thing.last_seen, detection.utime);
   thing.author = detection.author;
-  if (!detection.object.empty()) followed_[{detection.author, detection.object}] = thing.number;
+  follow(detection, *kept);
 
-  const bool is_there =
-      distance(thing.T_map_asset, T_map_asset) <= kMoved && turn(thing.T_map_asset, T_map_asset) <= kTurned;
   if (thing.injection.empty()) {
     if (distance(thing.T_map_asset, T_map_asset) > kSameThing) kept->weight = 0;  // it was followed there
     const double weight = std::max(detection.score, 1e-3);
     kept->weight = std::min(kept->weight + weight, kMostWeight);
     thing.T_map_asset = between(thing.T_map_asset, T_map_asset, std::min(1.0, weight / kept->weight));
-  } else if (is_there) {
+  } else if (lies_at(*kept, T_map_asset)) {
     kept->agreeing = 0;
   } else {
     const bool agrees = kept->agreeing > 0 && distance(kept->elsewhere, T_map_asset) <= kMoved;
-    kept->agreeing = agrees ? kept->agreeing + 1 : 1;
+    kept->agreeing = agrees ? std::min(kept->agreeing + 1, 10) : 1;
     kept->elsewhere = agrees ? between(kept->elsewhere, T_map_asset, 1.0 / kept->agreeing) : T_map_asset;
-    if (kept->agreeing >= kAgreeing) {
+    if (kept->agreeing >= kAgreeing && now >= kept->next_move) {
       seen.moved_to = kept->elsewhere;
-      kept->agreeing = 0;
+      kept->next_move = now + kept->pause;
+      kept->pause = std::min(2 * kept->pause, kLongestPause);
     }
   }
   return seen;
@@ -99,25 +130,41 @@ const Thing* Sightings::find(std::int64_t number) const {
 
 void Sightings::add(const std::string& asset, const std::string& class_name, const std::string& injection,
                     const Transform& T_map_asset) {
-  if (!make_room()) return;  // then it is not followed, and stays where it is
-  Thing& thing = things_[++last_number_].thing;
-  thing.number = last_number_;
-  thing.asset = asset;
-  thing.class_name = class_name;
-  thing.injection = injection;
-  thing.T_map_asset = T_map_asset;
+  const auto added = add_thing(asset, T_map_asset);
+  if (!added) return;  // then it is not followed, and stays where it is
+  (*added)->thing.class_name = class_name;
+  (*added)->thing.injection = injection;
 }
 
+/// Where it was seen before it was put is where it is seen there, if the fit took it no farther than a fit may.
 void Sightings::put(std::int64_t number, const std::string& injection, const Transform& T_map_asset) {
   Kept& kept = things_.at(number);
+  std::optional<Transform> seen;
+  if (kept.thing.injection.empty()) {
+    seen = kept.thing.T_map_asset;
+  } else if (kept.agreeing > 0) {
+    seen = kept.elsewhere;
+  }
+  if (seen && distance(*seen, T_map_asset) > kSameThing) seen.reset();
+  kept.seen_at = seen;
   kept.thing.injection = injection;
   kept.thing.T_map_asset = T_map_asset;
+  kept.agreeing = 0;
+  kept.next_move = 0;
+  kept.pause = kFirstPause;
+}
+
+void Sightings::seen_there(std::int64_t number) {
+  Kept& kept = things_.at(number);
+  kept.seen_at = kept.elsewhere;
   kept.agreeing = 0;
 }
 
 void Sightings::drop(std::int64_t number) {
-  things_.erase(number);
-  std::erase_if(followed_, [number](const auto& entry) { return entry.second == number; });
+  const auto it = things_.find(number);
+  if (it == things_.end()) return;
+  for (const auto& name : it->second.names) followed_.erase(name);
+  things_.erase(it);
 }
 
 std::vector<Thing> Sightings::list() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -11,28 +12,40 @@
 
 namespace concord {
 
+inline constexpr double kMoved = 0.15;  ///< metres
+inline constexpr double kTurned = 0.5;  ///< radians
+/// Whether an object that lies at the one lies at the other for all that sightings can tell.
+[[nodiscard]] bool is_same_place(const Transform& a, const Transform& b);
+
 /// What was seen, made into things: repeated sightings of one object are one.
 ///
 /// A sighting is of the thing that who saw it followed under the same name; else of the nearest one of the same asset
 /// within kSameThing; else of a new one. Until a person confirms it, a thing lies where its sightings lie on average,
 /// each by its score, the last ten counting. Confirmed, it stays where it was put until kAgreeing sightings in a row
-/// agree that it is somewhere else.
+/// agree that it is somewhere else. Whoever is off a little sees it a little off, always: where it is seen while it
+/// lies where it was put is as good as there. What could not be moved is tried less and less often.
 class Sightings {
  public:
   static constexpr double kSameThing = 0.5;  ///< metres
-  static constexpr double kMoved = 0.15;     ///< metres from where it was put
-  static constexpr double kTurned = 0.5;     ///< radians
   static constexpr int kAgreeing = 3;
+  static constexpr std::size_t kMostFollowers = 32;       ///< of one thing, who have a name for it
+  static constexpr std::int64_t kFirstPause = 5'000'000;  ///< after a move was called for, microseconds
+  static constexpr std::int64_t kLongestPause = 300'000'000;
+  /// None twice, over all restarts. Refused: kIo.
+  using NextNumber = std::function<Result<std::int64_t>()>;
+
+  explicit Sightings(NextNumber next_number) : next_number_(std::move(next_number)) {}
 
   struct Seen {
     std::int64_t number = 0;
     bool is_new = false;
     std::optional<Transform> moved_to;  ///< it was confirmed, and lies there now: it has to be moved
   };
-  /// @param asset the one that was seen, whatever name the detection has for it. Refused (kTooLarge): one thing more
-  /// than kMaxThings, all of which are confirmed; else the one that was not seen for the longest time gives way.
+  /// @param asset the one that was seen, whatever name the detection has for it. @param now microseconds. Refused
+  /// (kTooLarge): one thing more than kMaxThings, all of which are confirmed; else the one that was not seen for the
+  /// longest time gives way.
   [[nodiscard]] Result<Seen> see(const Detection& detection, const std::string& asset, const std::string& class_name,
-                                 const Transform& T_map_asset);
+                                 const Transform& T_map_asset, std::int64_t now);
 
   /// Null: there is none of this number.
   [[nodiscard]] const Thing* find(std::int64_t number) const;
@@ -41,6 +54,8 @@ class Sightings {
            const Transform& T_map_asset);
   /// It was put there, or lies there now. @pre it is there.
   void put(std::int64_t number, const std::string& injection, const Transform& T_map_asset);
+  /// Where it was seen last, as elsewhere, it is seen while it lies where it was put. @pre it is there.
+  void seen_there(std::int64_t number);
   /// It is none, or is there no more.
   void drop(std::int64_t number);
   /// In the order of their numbers.
@@ -51,14 +66,20 @@ class Sightings {
     Thing thing;
     double weight = 0;  ///< of the sightings that its place is the mean of
     Transform elsewhere = Transform::Identity();
-    int agreeing = 0;  ///< sightings in a row that it is elsewhere
+    int agreeing = 0;                  ///< sightings in a row that it is elsewhere
+    std::optional<Transform> seen_at;  ///< while it lies where it was put
+    std::int64_t next_move = 0, pause = kFirstPause;
+    std::map<std::string, std::string> names;  ///< by who follows it
   };
+  [[nodiscard]] static bool lies_at(const Kept& kept, const Transform& T_map_asset);
+  [[nodiscard]] Result<Kept*> add_thing(const std::string& asset, const Transform& T_map_asset);
+  void follow(const Detection& detection, Kept& kept);
   [[nodiscard]] Kept* thing_of(const Detection& detection, const std::string& asset, const Transform& T_map_asset);
   [[nodiscard]] bool make_room();
 
   std::map<std::int64_t, Kept> things_;
   std::map<std::pair<std::string, std::string>, std::int64_t> followed_;  ///< by who and their name for it
-  std::int64_t last_number_ = 0;
+  NextNumber next_number_;
 };
 
 }  // namespace concord

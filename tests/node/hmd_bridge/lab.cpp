@@ -23,7 +23,7 @@ Lab::Lab(With with, double resolution) {
   }
   if (with != kWithoutSemantic) {
     publish_status_each_second(context("semantic"));
-    semantic = std::make_unique<SemanticNode>(context("semantic"));
+    semantic = std::make_unique<SemanticNode>(context("semantic"), std::launch::deferred);
   }
   ingest = std::make_unique<IngestNode>(context("ingest"));
   if (with != kWithoutMerge) merge = std::make_unique<MergeNode>(context("merge"));

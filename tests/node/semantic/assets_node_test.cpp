@@ -50,6 +50,16 @@ class AssetsNodeTest : public SemanticStation {
     for (const std::int32_t x : {25, 55, 85}) out += (is_there(x) ? seen_at(x) : "-") + "|";
     return out;
   }
+  /// Somebody holds the cubic metre from there on for ten seconds.
+  bool lease(const std::string& author, double x) {
+    LeaseRequest lease;
+    lease.id = "lease " + author;
+    lease.author = author;
+    lease.lease = "corner";
+    lease.volume = Box{{x, 0, 0}, {x + 1, 1, 1}};
+    lease.utime = bus_->now();
+    return ask("in/lease", encode(lease)).ok;
+  }
   [[nodiscard]] bool is_there(std::int32_t x) const { return is_occupied(merge_->map().at({x, 5, 5})); }
   [[nodiscard]] std::string seen_at(std::int32_t x) const {
     const LogOdds value = heard_.at({x, 5, 5});
@@ -176,16 +186,115 @@ TEST_F(AssetsNodeTest, AMovedModelIsTakenOutForGoodWhereverItIs) {
 
 TEST_F(AssetsNodeTest, AMoveThatMayNotLeaveItsOldPlaceIsUndone) {
   ASSERT_TRUE(inject("a1", "cube", 2.0).ok);
-  LeaseRequest lease;
-  lease.id = "lease";
-  lease.author = "bob";
-  lease.lease = "corner";
-  lease.volume = Box{{2, 0, 0}, {3, 1, 1}};
-  lease.utime = bus_->now();
-  ASSERT_TRUE(ask("in/lease", encode(lease)).ok);
+  ASSERT_TRUE(lease("bob", 2.0));
   EXPECT_EQ(move("m1", "a1", 5.0).code, "LOCKED");
   run();
   EXPECT_EQ(places(), "box 1|-|-|");
+}
+
+TEST_F(AssetsNodeTest, AMoveWhoseUndoMayNotComeBackStaysAndIsNotAskedForAtTheSpeedOfTheBus) {
+  ASSERT_TRUE(inject("a1", "cube", 2.0).ok);
+  ASSERT_TRUE(move("m1", "a1", 5.0).ok);
+  ASSERT_TRUE(lease("bob", 2.0));
+  int asked = 0;
+  for (const char* channel : {"in/undo", "in/edit", "in/history_request"}) {
+    bus_->subscribe(channel, [&asked](const std::string&, auto) { ++asked; });
+  }
+  ASSERT_TRUE(ask("in/undo", encode(UndoRequest{"u1", "eva", "asset-m1", false, bus_->now()})).ok);
+  run();
+  EXPECT_EQ(places(), "-|box 1|-|") << "a model is somewhere";
+  EXPECT_LT(asked, 12);
+  EXPECT_GT(counters_.get("refused.asset_undo.CONFLICT"), 0) << "and it is said";
+  run(20'000'000);  // the lease is over
+  EXPECT_EQ(places(), "-|box 1|-|");
+  ASSERT_TRUE(undo_edit("u2", "asset-m1").ok);
+  EXPECT_EQ(places(), "box 1|-|-|");
+}
+
+TEST_F(AssetsNodeTest, ItsOldPlaceRedoneIsWhereItIsAndOneDeleteTakesItOut) {
+  ASSERT_TRUE(inject("a1", "cube", 2.0).ok);
+  ASSERT_TRUE(move("m1", "a1", 5.0).ok);
+  ASSERT_TRUE(move("m2", "a1", 8.0).ok);
+  ASSERT_TRUE(undo_edit("u1", "asset-a1", true).ok);
+  run();
+  EXPECT_EQ(places(), "box 1|-|-|") << "it is one thing";
+  start();
+  EXPECT_EQ(places(), "box 1|-|-|");
+  ASSERT_TRUE(take_out("d1", "a1").ok);
+  run();
+  EXPECT_EQ(places(), "-|-|-|");
+}
+
+TEST_F(AssetsNodeTest, WhatComesWithALoadedMapShowsThoughMergeHasItsEditAlready) {
+  ASSERT_TRUE(inject("a1", "cube", 2.0).ok);
+  run();
+  const MapRequest save{"s1", MapRequest::Op::kSave, "hall", "concord", false, ""};
+  Answer saved = ask("in/map_request", encode(save, bus_->now()));
+  if (saved.code == "BUSY") saved = ask("in/map_request", encode(save, bus_->now()));
+  ASSERT_TRUE(saved.ok) << saved.message;
+  stop();
+  for (const char* part : {"", "-wal", "-shm"})
+    std::filesystem::remove(site_.state / (std::string("semantic.db") + part));
+  start();
+  EXPECT_EQ(places(), "|-|-|") << "there, but nobody knows what it is";
+  ask("in/map_request", encode(MapRequest{"o1", MapRequest::Op::kLoad, "hall", "concord", false, ""}, bus_->now()));
+  ask("out/answer", encode(Answer{"o1", "merge", true, "OK", "", 9, 3}, bus_->now()));
+  int edits = 0;
+  bus_->subscribe("in/edit", [&edits](const std::string&, auto) { ++edits; });
+  run();
+  EXPECT_EQ(places(), "box 1|-|-|");
+  EXPECT_EQ(edits, 0);
+}
+
+TEST_F(AssetsNodeTest, RefusesAModelThatFillsTooMuchBeforeItTakesMemory) {
+  std::ofstream(site_.state / "assets/assets.yaml") << "cube: {file: cube.obj, class: box, unit: 0.044}\n";
+  run();
+  const Answer answer = inject("a1", "cube", 2.0);
+  EXPECT_EQ(answer.code, "TOO_LARGE") << answer.message;
+  EXPECT_NE(answer.message.find("500000"), std::string::npos) << answer.message;
+}
+
+TEST_F(AssetsNodeTest, ABadLineHidesNoOtherAssetAndIsCountedOnce) {
+  std::vector<Asset> heard;
+  ListReceiver<Asset> list(*bus_, counters_, "out/assets", [&](const std::vector<Asset>& all) { heard = all; });
+  std::ofstream(site_.state / "assets/assets.yaml")
+      << "cube: {file: cube.obj, class: box, unit: 0.001}\nbad: {file: ../etc}\nworse: {unit: twelve}\nnone: 7\n";
+  run(10'000'000);
+  ASSERT_EQ(heard.size(), 1U);
+  EXPECT_EQ(heard[0].name, "cube");
+  EXPECT_EQ(counters_.get("refused.assets.BAD_NAME"), 2) << "one file outside, and one that needs one";
+  EXPECT_EQ(counters_.get("refused.assets.MALFORMED"), 1);
+  std::ofstream(site_.state / "assets/assets.yaml") << "cube: {file: cube.obj";
+  run();
+  EXPECT_EQ(heard.size(), 1U) << "what it was, until it is one again";
+  EXPECT_EQ(counters_.get("refused.assets.MALFORMED"), 2);
+}
+
+TEST_F(AssetsNodeTest, AGltfIsMadeOnceAndOfWhatTheModelIs) {
+  const auto file = site_.state / "assets/gltf/cube.glb";
+  const auto assets = site_.state / "assets/assets.yaml";
+  ASSERT_TRUE(std::filesystem::exists(file));
+  const auto made = std::filesystem::last_write_time(file);
+  start();
+  run();
+  EXPECT_EQ(std::filesystem::last_write_time(file), made) << "it is not made again";
+  std::vector<Asset> heard;
+  ListReceiver<Asset> list(*bus_, counters_, "out/assets", [&](const std::vector<Asset>& all) { heard = all; });
+  run();
+  ASSERT_EQ(heard.size(), 2U);
+  EXPECT_EQ(heard[0].gltf_bytes, static_cast<std::int64_t>(std::filesystem::file_size(file)));
+  EXPECT_NEAR(heard[0].size.x(), 1.0, 1e-9);
+  std::ofstream(site_.state / "assets/other.obj") << "v 0 0 0\nv 3000 0 0\nv 0 1000 0\nf 1 2 3\n";
+  std::ofstream(assets) << "cube: {file: other.obj, class: box, unit: 0.001}\n";
+  run();
+  ASSERT_EQ(heard.size(), 1U);
+  EXPECT_NEAR(heard[0].size.x(), 3.0, 1e-9);
+  std::filesystem::remove(file);
+  run();
+  EXPECT_TRUE(std::filesystem::exists(file)) << "somebody removed it";
+  std::ofstream(assets) << "{}\n";
+  run();
+  EXPECT_FALSE(std::filesystem::exists(file));
 }
 
 TEST_F(AssetsNodeTest, AKillBetweenTheTwoHalvesOfAMoveLosesNothing) {
@@ -221,13 +330,7 @@ TEST_F(AssetsNodeTest, AKillBetweenTheIntentAndTheEditLosesNothing) {
 }
 
 TEST_F(AssetsNodeTest, WhatMergeRefusesIsNotThere) {
-  LeaseRequest lease;
-  lease.id = "lease";
-  lease.author = "bob";
-  lease.lease = "corner";
-  lease.volume = Box{{2, 0, 0}, {3, 1, 1}};
-  lease.utime = bus_->now();
-  ASSERT_TRUE(ask("in/lease", encode(lease)).ok);
+  ASSERT_TRUE(lease("bob", 2.0));
   EXPECT_EQ(inject("a1", "cube", 2.0).code, "LOCKED");
   run(20'000'000);  // the lease is over
   EXPECT_FALSE(is_there(25));
@@ -251,7 +354,8 @@ TEST_F(AssetsNodeTest, ARevisionOfTheMapInASavesAnswerIsNoneOfTheHistory) {
 TEST_F(AssetsNodeTest, HistoryThatWasNotAnsweredIsAskedForAgain) {
   stop();
   bus_ = std::make_unique<LockstepBus>(bus_->now());  // merge is not there
-  semantic_ = std::make_unique<SemanticNode>(NodeContext{*bus_, counters_, site_, "semantic", bus_->now()});
+  semantic_ = std::make_unique<SemanticNode>(NodeContext{*bus_, counters_, site_, "semantic", bus_->now()},
+                                             std::launch::deferred);
   int questions = 0;
   bus_->subscribe("in/history_request", [&questions](const std::string&, auto) { ++questions; });
   bus_->publish("out/answer", encode(Answer{"u1", "merge", true, "OK", "undone", 7, 1}, bus_->now()));

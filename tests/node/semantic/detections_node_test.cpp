@@ -91,10 +91,98 @@ TEST_F(DetectionsNodeTest, WhatWasInjectedIsKnownAfterARestartAndGoesWhenItIsTak
   auto all = things();
   ASSERT_EQ(all.size(), 1U);  // the one that nobody confirmed is seen again, or not
   EXPECT_EQ(all[0].injection, "c1");
-  EXPECT_EQ(see(2.1).message, "thing 1, seen before");
+  EXPECT_EQ(see(2.1).message, "thing 101, seen before") << "no number twice";
   ASSERT_TRUE(ask("in/undo", encode(UndoRequest{"u1", "eva", "asset-c1", false, bus_->now()})).ok);
   run();
   EXPECT_TRUE(things().empty());
+}
+
+TEST_F(DetectionsNodeTest, TwoWhoConfirmOneThingAtOnceInjectOne) {
+  see(2.0);
+  answers_.clear();
+  for (const char* id : {"c1", "c2"}) {
+    const DetectionDecision decision{id, id, DetectionDecision::Op::kConfirm, 1, bus_->now()};
+    bus_->publish("in/detection_decision", encode(decision));
+  }
+  run();
+  const auto answer_to = [&](const std::string& id) { return *std::ranges::find(answers_, id, &Answer::id); };
+  EXPECT_TRUE(answer_to("c1").ok) << answer_to("c1").message;
+  EXPECT_EQ(answer_to("c2").code, "CONFLICT");
+  EXPECT_EQ(things().size(), 1U);
+}
+
+TEST_F(DetectionsNodeTest, AfterARefusalItMayBeConfirmedAgain) {
+  std::filesystem::rename(site_.state / "assets/crate.obj", site_.state / "assets/away.obj");
+  see(2.0);
+  EXPECT_EQ(decide("c1", 1).code, "NOT_FOUND");
+  std::filesystem::rename(site_.state / "assets/away.obj", site_.state / "assets/crate.obj");
+  run();
+  EXPECT_TRUE(decide("c2", 1).ok);
+}
+
+TEST_F(DetectionsNodeTest, DecisionsAskedAgainAreAnsweredAlikeAfterARestartToo) {
+  see(2.0);
+  see(9.0);
+  const DetectionDecision drop{"d1", "eva", DetectionDecision::Op::kDrop, 2, bus_->now()};
+  ASSERT_TRUE(ask("in/detection_decision", encode(drop)).ok);
+  EXPECT_TRUE(ask("in/detection_decision", encode(drop)).ok);
+  const DetectionDecision confirm{"c1", "eva", DetectionDecision::Op::kConfirm, 1, bus_->now()};
+  ASSERT_TRUE(ask("in/detection_decision", encode(confirm)).ok);
+  start();
+  see(12.0);  // another thing; it must not be what the old number means
+  const Answer again = ask("in/detection_decision", encode(confirm));
+  EXPECT_TRUE(again.ok) << again.message;
+  EXPECT_EQ(things().size(), 2U);
+  EXPECT_FALSE(is_there(12.0));
+  DetectionDecision other = confirm;
+  other.thing = 101;
+  EXPECT_EQ(ask("in/detection_decision", encode(other)).code, "EXISTS");
+}
+
+TEST_F(DetectionsNodeTest, WhoSeesItOffDoesNotDragItOffItsSurface) {
+  BrickMasks sides;
+  for (int x = 0; x < 11; ++x) {
+    for (int y = 0; y < 7; ++y) {
+      for (int z = 0; z < 5; ++z) {
+        if (x == 0 || x == 10 || y == 0 || y == 6 || z == 4) sides.insert({20 + x, 30 + y, z});
+      }
+    }
+  }
+  for (const auto& [index, mask] : sides.sorted()) agent_map_.set(index, Brick::uniform(mask, kOccupied));
+  start();
+  see(2.3);
+  ASSERT_TRUE(decide("c1", 1).ok);
+  run();
+  const double there = things().at(0).T_map_asset.translation().x();
+  EXPECT_NEAR(there, 2.0, 0.1);
+  int edits = 0;
+  bus_->subscribe("in/edit", [&edits](const std::string&, auto) { ++edits; });
+  for (int i = 0; i < 40; ++i) see(i % 2 == 0 ? 2.3 : 1.65), run(1'000'000);
+  for (int i = 0; i < 20; ++i) see(1.65), run(1'000'000);
+  EXPECT_EQ(edits, 0);
+  EXPECT_EQ(things().at(0).T_map_asset.translation().x(), there);
+  start();
+  for (int i = 0; i < 20; ++i) see(2.3), run(1'000'000);
+  EXPECT_EQ(things().at(0).T_map_asset.translation().x(), there) << "after a restart";
+}
+
+TEST_F(DetectionsNodeTest, WhatMayNotBeMovedIsNotTriedAgainAndAgain) {
+  see(2.0, 0.9, "target 7");
+  ASSERT_TRUE(decide("c1", 1).ok);
+  run();
+  LeaseRequest lease;
+  lease.id = "lease";
+  lease.author = "bob";
+  lease.lease = "corner";
+  lease.volume = Box{{5, 0, 0}, {9, 9, 2}};
+  lease.utime = bus_->now();
+  ASSERT_TRUE(ask("in/lease", encode(lease)).ok);
+  int edits = 0;
+  bus_->subscribe("in/edit", [&edits](const std::string&, auto) { ++edits; });
+  for (int i = 0; i < 60; ++i) see(6.0, 0.9, "target 7");
+  run(6'000'000);
+  EXPECT_GE(edits, 1);
+  EXPECT_LE(edits, 2);
 }
 
 TEST_F(DetectionsNodeTest, RefusesWhatIsUnsureUnknownOrNowhere) {

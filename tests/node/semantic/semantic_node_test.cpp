@@ -73,6 +73,18 @@ TEST_F(SemanticNodeTest, DeletingAnInstanceIsOneEditThatMergeAnswersAndUndoes) {
   EXPECT_EQ(seen(4), "");
 }
 
+TEST_F(SemanticNodeTest, ADeletionAskedAgainIsAnsweredAlikeAfterARestartToo) {
+  ASSERT_TRUE(label("l1", "chair", 0, 3).ok);
+  ASSERT_TRUE(change("d1", Op::kDelete, {1, 1}).ok);
+  run();
+  EXPECT_TRUE(change("d1", Op::kDelete, {1, 1}).ok);
+  start();
+  const Answer again = change("d1", Op::kDelete, {1, 1});
+  EXPECT_TRUE(again.ok) << again.message;
+  EXPECT_EQ(again.count, 4);
+  EXPECT_EQ(change("d2", Op::kDelete, {1, 1}).code, "EMPTY");
+}
+
 TEST_F(SemanticNodeTest, TakingALabelOffLeavesTheVoxels) {
   ASSERT_TRUE(label("l1", "chair", 0, 3).ok);
   ASSERT_TRUE(change("o1", Op::kTakeOff, {1, 1}).ok);

@@ -51,7 +51,8 @@ class SemanticStation : public ::testing::Test {
       bus_->publish("out/status/semantic", encode(ProcessStatus{bus_->now(), "semantic", 1, {}}));
     });
     merge_ = std::make_unique<MergeNode>(NodeContext{*bus_, counters_, site_, "merge", time});
-    semantic_ = std::make_unique<SemanticNode>(NodeContext{*bus_, counters_, site_, "semantic", time});
+    semantic_ =
+        std::make_unique<SemanticNode>(NodeContext{*bus_, counters_, site_, "semantic", time}, std::launch::deferred);
     bus_->subscribe("out/answer", [this](const std::string&, auto bytes) {
       const Answer answer = *decode<Answer>(bytes);
       if (!answer.id.starts_with("semantic-")) answers_.push_back(answer);  // its own questions to merge

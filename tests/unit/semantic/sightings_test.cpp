@@ -21,9 +21,10 @@ class SightingsTest : public testing::Test {
     detection.object = object;
     detection.score = score;
     detection.utime = ++now_;
-    return *sightings_.see(detection, asset, asset, T);
+    return *sightings_.see(detection, asset, asset, T, now_);
   }
-  Sightings sightings_;
+  std::int64_t last_number_ = 0;
+  Sightings sightings_{[this]() -> Result<std::int64_t> { return ++last_number_; }};
   std::int64_t now_ = 0;
 };
 
@@ -76,6 +77,54 @@ TEST_F(SightingsTest, ATurnedThingMovesToo) {
   EXPECT_TRUE(see(at(1.0, 0, 1.2)).moved_to);
 }
 
+TEST_F(SightingsTest, WhoSeesItOffAsBeforeSeesItWhereItIs) {
+  see(at(1.3));
+  sightings_.put(1, "a1", at(1.0));  // it was fitted to the map
+  for (int i = 0; i < 5; ++i) EXPECT_FALSE(see(at(1.3)).moved_to);
+  for (int i = 0; i < 2; ++i) EXPECT_FALSE(see(at(0.6)).moved_to);
+  ASSERT_TRUE(see(at(0.6)).moved_to);
+  sightings_.seen_there(1);  // the fit says that it lies there all the same
+  now_ += Sightings::kLongestPause;
+  for (int i = 0; i < 5; ++i) EXPECT_FALSE(see(at(0.6)).moved_to);
+  for (int i = 0; i < 2; ++i) EXPECT_FALSE(see(at(4.0), "t").moved_to);
+}
+
+TEST_F(SightingsTest, WhatIsNotMovedIsTriedLessAndLessOften) {
+  see(at(1.0), "t");
+  sightings_.put(1, "a1", at(1.0));
+  int tried = 0;
+  for (std::int64_t second = 0; second < 3600; ++second) {
+    now_ = second * 1'000'000;
+    if (see(at(6.0), "t").moved_to) ++tried;
+  }
+  EXPECT_GE(tried, 10);
+  EXPECT_LE(tried, 20);
+  sightings_.put(1, "a1", at(6.0));  // it was
+  for (int i = 0; i < 2; ++i) EXPECT_FALSE(see(at(9.0), "t").moved_to);
+  EXPECT_TRUE(see(at(9.0), "t").moved_to);
+}
+
+TEST_F(SightingsTest, NamesOfFollowersAreBounded) {
+  for (int i = 0; i < 1000; ++i) see(at(1.0), "object " + std::to_string(i));
+  EXPECT_EQ(see(at(1.0), "object 999").number, 1);
+  EXPECT_EQ(see(at(9.0), "object 999").number, 1);
+  EXPECT_EQ(see(at(1.0), "object 1").number, 2) << "it has another name now";
+  Detection detection;
+  for (int i = 0; i < 100; ++i) {
+    detection.author = "robot" + std::to_string(i);
+    detection.object = "it";
+    ASSERT_TRUE(sightings_.see(detection, "chair", "chair", at(20.0), 0));
+  }
+  detection.author = "robot99";
+  EXPECT_EQ(sightings_.see(detection, "chair", "chair", at(25.0), 0)->number, 3);
+}
+
+TEST_F(SightingsTest, WithoutANumberNothingIsAThing) {
+  Sightings full([]() -> Result<std::int64_t> { return refuse(Code::kIo, "the disk is full"); });
+  EXPECT_EQ(full.see({}, "chair", "chair", at(0), 0).error().code, Code::kIo);
+  EXPECT_TRUE(full.list().empty());
+}
+
 TEST_F(SightingsTest, IsBoundedAndLetsGoOfTheOldestThatNobodyConfirmed) {
   for (std::size_t i = 0; i < kMaxThings; ++i) see(at(10.0 * static_cast<double>(i)));
   sightings_.put(1, "a1", at(0));
@@ -85,7 +134,7 @@ TEST_F(SightingsTest, IsBoundedAndLetsGoOfTheOldestThatNobodyConfirmed) {
   EXPECT_EQ(sightings_.find(2), nullptr);
   for (const Thing& thing : sightings_.list()) sightings_.put(thing.number, "a", thing.T_map_asset);
   Detection detection;
-  EXPECT_EQ(sightings_.see(detection, "chair", "chair", at(-50)).error().code, Code::kTooLarge);
+  EXPECT_EQ(sightings_.see(detection, "chair", "chair", at(-50), 0).error().code, Code::kTooLarge);
 }
 
 }  // namespace
