@@ -13,7 +13,7 @@
 #include "bridge/things.hpp"
 #include "bus/brick_stream.hpp"
 #include "bus/list_stream.hpp"
-#include "bus/messages.hpp"
+#include "bus/messages_map.hpp"
 #include "bus/process.hpp"
 #include "session/hub.hpp"
 

@@ -42,14 +42,6 @@ struct BrickDigest {
   std::int64_t incarnation = 0;
 };
 
-/// From which revision of the map stream on it holds people's corrections.
-struct MapEdits {
-  std::int64_t utime = 0;
-  std::int64_t boot_id = 0;        ///< of the map stream's sender
-  std::int64_t edit_revision = 0;  ///< all corrections up to this one are in the map
-  std::int64_t map_revision = 0;   ///< at the latest since this one
-};
-
 struct BrickRequest {
   std::int64_t boot_id = 0;
   std::vector<std::pair<std::int64_t, std::int64_t>> intervals;  ///< of versions, both ends included
@@ -156,7 +148,6 @@ struct ListRequest {
 /// Value to wire bytes. `utime` stamps messages whose value has no time of its own.
 [[nodiscard]] Bytes encode(const BrickPacket& value);
 [[nodiscard]] Bytes encode(const BrickDigest& value);
-[[nodiscard]] Bytes encode(const MapEdits& value);
 [[nodiscard]] Bytes encode(const BrickRequest& value, std::int64_t utime);
 [[nodiscard]] Bytes encode(const OctomapMessage& value);
 [[nodiscard]] Bytes encode(const CloudMessage& value);
@@ -211,8 +202,6 @@ template <>
 Decoded<BrickPacket> decode(std::span<const std::uint8_t> bytes);
 template <>
 Decoded<BrickDigest> decode(std::span<const std::uint8_t> bytes);
-template <>
-Decoded<MapEdits> decode(std::span<const std::uint8_t> bytes);
 template <>
 Decoded<BrickRequest> decode(std::span<const std::uint8_t> bytes);
 template <>

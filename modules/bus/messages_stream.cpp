@@ -8,6 +8,7 @@
 #include <concord/map_edits_t.hpp>
 #include <concord/octomap_t.hpp>
 
+#include "bus/messages_map.hpp"
 #include "bus/translate.hpp"
 
 namespace concord {

@@ -4,6 +4,8 @@
 #include <set>
 #include <utility>
 
+#include "bus/messages_map.hpp"
+
 namespace concord {
 namespace {
 

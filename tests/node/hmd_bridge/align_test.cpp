@@ -97,6 +97,15 @@ TEST_F(Aligning, MapsThatContradictEachOtherAreRefused) {
   lab.agent_maps("robot3", voxels_of(after));
   EXPECT_CODE(ana.ask(AlignRequest{"robot3", "robot2", kHere}), "DIVERGED");
   EXPECT_FALSE(agent("robot3")["aligned"].get<bool>());
+  Client bert(lab);
+  become_agent(bert, "quest", false);
+  const VoxelLook look = look_of(voxels_of(after));
+  EXPECT_CODE(bert.upload(FrameKind::kVoxels, static_cast<std::uint32_t>(look.chunks.size()), 0, voxels_payload(look)),
+              "OK");
+  lab.run(3);
+  lab.bus->publish("in/robot2/pose", encode(AgentPose{"robot2", "odom", Transform::Identity(), lab.bus->now()}));
+  lab.bus->deliver();
+  EXPECT_CODE(bert.ask(ReferenceRequest{"robot2", kHere}), "DIVERGED");
 }
 
 TEST_F(Aligning, DecisionsHoldOnlyForWhatStands) {

@@ -1,5 +1,6 @@
 #include <stdexcept>
 
+#include "bus/messages_map.hpp"
 #include "merge/merge_schema.hpp"
 #include "people_station.hpp"
 #include "store/database.hpp"

@@ -3,6 +3,7 @@
 #include "bus/messages_asset.hpp"
 #include "bus/messages_detection.hpp"
 #include "bus/messages_label.hpp"
+#include "bus/messages_map.hpp"
 
 namespace concord::test {
 namespace {
