@@ -38,13 +38,14 @@ Hub::Config hub_config(const Site& site) {
   return config;
 }
 
-BridgeNode::BridgeNode(const NodeContext& context, Gate& gate, const Hub::Config& config, std::string models)
+BridgeNode::BridgeNode(const NodeContext& context, Gate& gate, const Hub::Config& config, std::launch how,
+                       std::string models)
     : context_(context),
       hub_(gate, config, handlers()),
       world_(context, hub_),
       asker_(context),
       desk_(context, hub_, world_, asker_, std::move(models)),
-      own_maps_(desk_) {
+      own_maps_(desk_, how) {
   world_.on_path = [this](const concord::Path& path) { on_path(path); };
   hear_parts();
   hear_alignments(desk_);
@@ -69,7 +70,7 @@ Hub::Handlers BridgeNode::handlers() {
         },
         body);
   };
-  handlers.on_upload = [this](const Ask& ask, const BinaryFrame& frame) { own_maps_.upload(ask, frame); };
+  handlers.on_upload = [this](const Ask& ask, PackedFrame frame) { own_maps_.upload(ask, std::move(frame)); };
   handlers.on_tracking = [this](Session& session) { own_maps_.tracking(session); };
   handlers.on_begin = [this](Session& session, bool resumed) {
     world_.welcome(session.person);

@@ -12,8 +12,11 @@ namespace concord::hmd {
 /// The bridge between the bus and its clients, whatever carries them: a server feeds the hub, a test may too.
 class BridgeNode {
  public:
+  /// @param how looks of headsets are judged: beside the loop (async), or within it (deferred), where time stands
+  /// still.
   /// @param models the address below which NAME.glb is an asset's model, for who is told of it.
-  BridgeNode(const NodeContext& context, Gate& gate, const Hub::Config& config, std::string models = "/models/");
+  BridgeNode(const NodeContext& context, Gate& gate, const Hub::Config& config, std::launch how,
+             std::string models = "/models/");
   BridgeNode(const BridgeNode&) = delete;
   BridgeNode& operator=(const BridgeNode&) = delete;
 

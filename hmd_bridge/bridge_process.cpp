@@ -32,7 +32,7 @@ StaticFiles load_files(const std::filesystem::path& web) {
     const auto page = std::make_shared<const std::string>(
         "<!doctype html><title>Concord</title><p>The bridge runs; its web client was not built."
         " See hmd_bridge/README.md.");
-    files.add("/index.html", {"text/html; charset=utf-8", page});
+    files.add("/index.html", {"text/html; charset=utf-8", page, {}});
   }
   return files;
 }
@@ -58,7 +58,7 @@ class BridgeProcess::Parts {
         tokens(token_file(context.site)),
         files(load_files(options.web)),
         models(models_address()),
-        node(context, gate, hub_config(context.site), models),
+        node(context, gate, hub_config(context.site), std::launch::async, models),
         server(io, node.hub(), gate, tokens, files, server_config(context.site, options.listener),
                [&bus = context.bus] { return bus.now(); }) {
     files.serve_models(models, context.site.state / "assets" / "gltf");

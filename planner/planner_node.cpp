@@ -230,6 +230,7 @@ void PlannerNode::blame(const Path& path) {
   if (cut) blamed_.ask(path.robot, path.path_id, cut->p, cut->band);
 }
 
-Planner::Moment PlannerNode::moment() const { return {receiver_.revision(), context_.bus.now()}; }
+/// What was planned on a map with holes must not pass for one that knows what lies in them.
+Planner::Moment PlannerNode::moment() const { return {receiver_.whole_revision(), context_.bus.now()}; }
 
 }  // namespace concord

@@ -10,11 +10,22 @@ namespace concord::hmd {
 namespace {
 
 constexpr double kTriesPerSecond = 1, kTriesAtOnce = 30;
+constexpr double kBytesPerSecond = 16e6, kBytesAtOnce = 256e6;
 
 std::string lower(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return text;
+}
+
+/// Of buckets that are kept for each, `fresh` at first. Those that are full need not be kept.
+bool take(std::map<std::string, TokenBucket>& buckets, const std::string& whose, const TokenBucket& fresh,
+          double amount, std::int64_t now) {
+  if (buckets.size() >= Gate::kMaxAddresses && !buckets.contains(whose)) {
+    std::erase_if(buckets, [now](const auto& entry) { return entry.second.full(now); });
+    if (buckets.size() >= Gate::kMaxAddresses) return false;
+  }
+  return buckets.try_emplace(whose, fresh).first->second.take(amount, now);
 }
 
 }  // namespace
@@ -48,11 +59,11 @@ bool origin_allowed(const std::string& origin, const std::string& scheme, const 
 }
 
 bool Gate::may_try(const std::string& address, std::int64_t now) {
-  if (tries_.size() >= kMaxAddresses && !tries_.contains(address)) {
-    std::erase_if(tries_, [now](const auto& entry) { return entry.second.full(now); });
-    if (tries_.size() >= kMaxAddresses) return false;
-  }
-  return tries_.try_emplace(address, kTriesPerSecond, kTriesAtOnce).first->second.take(1, now);
+  return take(tries_, address, TokenBucket(kTriesPerSecond, kTriesAtOnce), 1, now);
+}
+
+bool Gate::may_take(const std::string& address, std::size_t bytes, std::int64_t now) {
+  return take(taken_, network_of(address), TokenBucket(kBytesPerSecond, kBytesAtOnce), static_cast<double>(bytes), now);
 }
 
 std::optional<std::string> Gate::issue(const Identity& identity, std::int64_t now) {

@@ -50,6 +50,8 @@ class Gate {
 
   /// Whether this address may try (a token, a connection) once more: 1 a second, 30 at once.
   [[nodiscard]] bool may_try(const std::string& address, std::int64_t now);
+  /// Whether this network may have so much of files and models now: 16 MB a second, 256 MB at once.
+  [[nodiscard]] bool may_take(const std::string& address, std::size_t bytes, std::int64_t now);
   /// A ticket for who has shown a token; nothing while kMaxTickets wait.
   [[nodiscard]] std::optional<std::string> issue(const Identity& identity, std::int64_t now);
   /// Whose ticket it is; nobody's once it was used or kTicketLife is over.
@@ -65,7 +67,8 @@ class Gate {
 
   std::function<std::string()> new_secret_;
   std::map<std::string, Ticket> tickets_;
-  std::map<std::string, TokenBucket> tries_;
+  using Buckets = std::map<std::string, TokenBucket>;  ///< by address, or network
+  Buckets tries_, taken_;
 };
 
 }  // namespace concord::hmd

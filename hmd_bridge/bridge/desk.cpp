@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kPathStep = 0.25;  // metres
 constexpr std::size_t kMaxPoints = 4096;
+constexpr std::size_t kMaxZones = 64;
 constexpr double kClearanceShown = 2.0;  // metres; what is further is as good
 
 /// From a point of the grid to the nearest cell that is not free, at most kClearanceShown. By squares of cells around
@@ -74,8 +75,19 @@ Granted<Path> Desk::show(const Session& session, const concord::Path& path, Fram
            path.id.substr(0, 80),
            path.plan_number,
            path.map_revision,
-           path.active};
+           path.active,
+           {},
+           {},
+           {},
+           {}};
   const Transform T_frame_map = where->T_map_frame.inverse();
+  if (!path.details.empty()) out.seconds = path.details.back().eta;
+  for (const std::string& zone : path.zones) {
+    if (out.zones.size() < kMaxZones) out.zones.push_back(zone.substr(0, 80));
+  }
+  if (path.failed_leg >= 0) out.failed_leg = path.failed_leg;
+  if (path.nearest)
+    out.nearest = array_of(T_frame_map * Eigen::Vector3d(path.nearest->x(), path.nearest->y(), path.zmin));
   const double step = std::max(kPathStep, path.length / (kMaxPoints / 2.0));
   const auto put = [&](const Eigen::Vector3d& p_map) {
     if (out.points.size() >= kMaxPoints) return;

@@ -21,16 +21,16 @@ Code upload_code(const Error& error) {
 }  // namespace
 
 OwnMaps::Own::Own(const NodeContext& context, const std::string& agent)
-    : mapper(context.site.resolution),
+    : mapper(std::make_shared<RoomMapper>(context.site.resolution)),
       boot_id(context.bus.now()),
       sender(context.bus, context.counters,
              {.stream = "in/" + agent,
               .resolution = context.site.resolution,
               .bytes_per_second = context.site.stream.bytes_per_second,
               .boot_id = boot_id},
-             mapper.map()) {}
+             map) {}
 
-OwnMaps::OwnMaps(Desk& desk) : desk_(desk) {
+OwnMaps::OwnMaps(Desk& desk, std::launch how) : desk_(desk), judge_(desk.context.bus, how) {
   const NodeContext& context = desk_.context;
   listen<FrameOver>(context.bus, context.counters, context.process, "out/frame_over/.*",
                     [this](const std::string& channel, const FrameOver& over) {
@@ -40,7 +40,7 @@ OwnMaps::OwnMaps(Desk& desk) : desk_(desk) {
   hear_others();
   context.bus.every(kPublish, [this] {
     for (auto& [agent, own] : by_agent_) {
-      if (own->dirty) publish(*own);
+      if (!own->changed.empty()) publish(*own);
     }
   });
 }
@@ -80,19 +80,19 @@ std::optional<std::string> OwnMaps::not_for_clients(const std::string& agent, Ro
   return std::nullopt;
 }
 
-OwnMaps::Own* OwnMaps::own_of(const std::string& agent) {
-  if (const auto it = by_agent_.find(agent); it != by_agent_.end()) return it->second.get();
+std::shared_ptr<OwnMaps::Own> OwnMaps::own_of(const std::string& agent) {
+  if (const auto it = by_agent_.find(agent); it != by_agent_.end()) return it->second;
   if (by_agent_.size() >= kMost) {
     const auto oldest = std::min_element(by_agent_.begin(), by_agent_.end(),
                                          [](const auto& a, const auto& b) { return a.second->used < b.second->used; });
     by_agent_.erase(oldest);
   }
-  return by_agent_.emplace(agent, std::make_unique<Own>(desk_.context, agent)).first->second.get();
+  return by_agent_.emplace(agent, std::make_shared<Own>(desk_.context, agent)).first->second;
 }
 
 void OwnMaps::begin(const Session& session, bool resumed) {
   if (session.agent.empty() || resumed) return;
-  if (const auto it = by_agent_.find(session.agent); it != by_agent_.end()) it->second->mapper.end_sequence();
+  if (const auto it = by_agent_.find(session.agent); it != by_agent_.end()) it->second->anew = true;
 }
 
 /// Its pose makes it an agent that people see and place, also before it has scanned anything.
@@ -106,52 +106,59 @@ void OwnMaps::tracking(const Session& session) {
   desk_.context.bus.publish("in/" + session.agent + "/pose", encode(pose));
 }
 
-Granted<OwnMaps::Own*> OwnMaps::open(const Session& session) {
+Granted<std::shared_ptr<OwnMaps::Own>> OwnMaps::open(const Session& session) {
   if (session.agent.empty()) return no(Code::kBadFrame, "this client is no agent; say agent and frame_id in hello");
   if (session.tracking_lost)
     return no(Code::kTrackingLost, "the device does not know where it is; look around until it does");
-  Own* own = own_of(session.agent);
+  const std::shared_ptr<Own> own = own_of(session.agent);
   if (own->over == session.frame_id) return no(Code::kBadFrame, "this frame was reset; begin another frame_id");
   own->used = desk_.now();
   if (own->frame_id != session.frame_id) {
-    own->mapper = RoomMapper(desk_.context.site.resolution);
+    own->mapper = std::make_shared<RoomMapper>(desk_.context.site.resolution);
     own->frame_id = session.frame_id;
-    own->dirty = false;
+    own->map = BrickMap();
+    own->changed.clear();
+    own->occupied = 0;
+    own->anew = false;
     if (own->begun) own->sender.begin(own->frame_id);
   }
   return own;
 }
 
-void OwnMaps::upload(const Ask& ask, const BinaryFrame& frame) {
-  const auto opened = open(*desk_.hub.find(ask.session));
+void OwnMaps::upload(const Ask& ask, PackedFrame frame) {
+  const Session& session = *desk_.hub.find(ask.session);
+  const auto opened = open(session);
   if (!opened) return desk_.refuse(ask, opened.error());
-  Own& own = **opened;
-  const std::int64_t sequence = frame.head.revision;
-  Result<void> taken;
-  if (frame.head.kind == FrameKind::kMesh) {
-    const auto look = read_mesh(frame);
-    taken = look ? own.mapper.take(*look, sequence) : tl::unexpected(look.error());
-  } else {
-    const auto look = read_voxels(frame);
-    taken = look ? own.mapper.take(*look, sequence) : tl::unexpected(look.error());
-  }
-  if (!taken) return desk_.hub.refuse(ask, upload_code(taken.error()), taken.error().message);
-  own.dirty = true;
-  if (frame.head.kind == FrameKind::kMesh) {
-    desk_.hub.answer(ask, UploadMeshAnswer{sequence, own.mapper.occupied()});
-  } else {
-    desk_.hub.answer(ask, UploadVoxelsAnswer{sequence, own.mapper.occupied()});
-  }
+  const std::shared_ptr<Own>& own = *opened;
+  LookJudge::Look look{session.agent, own->mapper, own->anew, std::move(frame), {}, {}};
+  look.on_brick = [own, mapper = own->mapper](BrickIndex index, Brick brick) {
+    if (own->mapper != mapper) return;  // its frame is over
+    own->map.set(index, std::move(brick));
+    own->changed.insert(index);
+  };
+  look.on_end = [this, ask, own, mapper = own->mapper, head = look.frame.head](const Result<void>& taken,
+                                                                               std::int64_t occupied) {
+    if (!taken) return desk_.hub.refuse(ask, upload_code(taken.error()), taken.error().message);
+    if (own->mapper == mapper) own->occupied = occupied;
+    if (head.kind == FrameKind::kMesh) {
+      desk_.hub.answer(ask, UploadMeshAnswer{head.revision, occupied});
+    } else {
+      desk_.hub.answer(ask, UploadVoxelsAnswer{head.revision, occupied});
+    }
+  };
+  if (!judge_.offer(std::move(look)))
+    return desk_.hub.refuse(ask, Code::kRate, "looks before this one are still being judged; offer it again");
+  own->anew = false;
 }
 
 void OwnMaps::publish(Own& own) {
-  own.dirty = false;
   if (!own.begun) {
-    if (own.mapper.map().brick_count() == 0) return;
+    if (own.map.brick_count() == 0) return own.changed.clear();
     own.sender.begin(own.frame_id);
     own.begun = true;
   }
-  for (const BrickIndex index : own.mapper.take_changed()) own.sender.touch(index);
+  for (const BrickIndex index : own.changed) own.sender.touch(index);
+  own.changed.clear();
   own.sender.send_now();
 }
 
@@ -159,12 +166,12 @@ void OwnMaps::send_map(const Ask& ask, const SendMapRequest& request) {
   const auto opened = open(*desk_.hub.find(ask.session));
   if (!opened) return desk_.refuse(ask, opened.error());
   Own& own = **opened;
-  if (own.mapper.occupied() == 0)
+  if (own.occupied == 0)
     return desk_.hub.refuse(ask, Code::kEmpty, "nothing was scanned yet: look around, a wall needs two looks");
   publish(own);
-  if (request.final) own.mapper.end_sequence();
-  desk_.hub.answer(
-      ask, SendMapAnswer{own.mapper.occupied(), own.mapper.known() - own.mapper.occupied(), own.sender.revision()});
+  if (request.final) own.anew = true;
+  const auto known = static_cast<std::int64_t>(own.map.known_count());
+  desk_.hub.answer(ask, SendMapAnswer{own.occupied, known - own.occupied, own.sender.revision()});
 }
 
 }  // namespace concord::hmd

@@ -3,11 +3,12 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "bridge/desk.hpp"
+#include "bridge/look_judge.hpp"
 #include "bus/brick_stream.hpp"
-#include "mapper/room_mapper.hpp"
 
 namespace concord::hmd {
 
@@ -16,7 +17,8 @@ class OwnMaps {
  public:
   static constexpr std::size_t kMost = 64;
 
-  OwnMaps(Desk& desk);
+  /// @param how looks are judged: beside the loop, or within it.
+  OwnMaps(Desk& desk, std::launch how);
   OwnMaps(const OwnMaps&) = delete;
   OwnMaps& operator=(const OwnMaps&) = delete;
 
@@ -24,31 +26,35 @@ class OwnMaps {
   [[nodiscard]] std::optional<std::string> not_for_clients(const std::string& agent, Role role) const;
   void begin(const Session& session, bool resumed);
   void tracking(const Session& session);
-  void upload(const Ask& ask, const BinaryFrame& frame);
+  void upload(const Ask& ask, PackedFrame frame);
   void send_map(const Ask& ask, const SendMapRequest& request);
 
  private:
   struct Own {
     Own(const NodeContext& context, const std::string& agent);
-    RoomMapper mapper;
-    std::int64_t boot_id;  ///< of its sender
+    std::shared_ptr<RoomMapper> mapper;  ///< the judge's, while a look waits
+    bool anew = false;                   ///< sequences begin anew with the next look
+    BrickMap map;                        ///< what has been judged
+    std::int64_t occupied = 0;
+    std::set<BrickIndex> changed;  ///< since it was published
+    std::int64_t boot_id;          ///< of its sender
     BrickSender sender;
     std::string frame_id;  ///< empty: not begun
     std::string over;      ///< a frame of it that was reset
     std::int64_t pose_sent = 0, used = 0;
-    bool dirty = false;
     bool begun = false;  ///< its sender has said something: until then nothing is void that others have of the agent
   };
 
   void hear_others();
   void heard_other(const std::string& agent);
-  [[nodiscard]] Own* own_of(const std::string& agent);
+  [[nodiscard]] std::shared_ptr<Own> own_of(const std::string& agent);
   /// The map that a client scans into now, or why it may not.
-  [[nodiscard]] Granted<Own*> open(const Session& session);
+  [[nodiscard]] Granted<std::shared_ptr<Own>> open(const Session& session);
   void publish(Own& own);
 
   Desk& desk_;
-  std::map<std::string, std::unique_ptr<Own>> by_agent_;
+  LookJudge judge_;
+  std::map<std::string, std::shared_ptr<Own>> by_agent_;
   std::map<std::string, std::int64_t> others_;  ///< agents that other processes speak for, and when they did last
 };
 

@@ -62,20 +62,27 @@ Granted<std::optional<std::string>> who_stands_in(Desk& desk, const concord::Vol
   return std::optional<std::string>();
 }
 
-/// Waits until the map has changed, and every path that was active has been looked at on a map of at least that
-/// revision.
+/// Waits until every path that was active has been looked at on a map that holds what was made.
 struct ReplanWait {
   std::map<std::string, std::int64_t> before;  ///< plan numbers, by robot
   std::map<std::string, std::string> status;   ///< then
-  std::int64_t asked_at = 0;                   ///< the map's revision before
-  std::optional<std::int64_t> revision;        ///< with the change; nothing: it has not come yet
+  std::int64_t boot_id = 0;                    ///< of the map's sender then; 0: not known
+  std::int64_t correction = 0;                 ///< what was made
+  std::optional<std::int64_t> revision;        ///< of the map, from which on it holds that; nothing: not said yet
   std::int64_t until = 0;
   std::function<void(const std::vector<PathConsequence>&, bool in_time)> done;
 };
 
-/// @param changes how many voxels; without any the map stays as it is.
-void await_replan(Desk& desk, std::shared_ptr<ReplanWait> wait, std::int64_t changes) {
-  if (changes == 0) wait->revision = desk.world.map().revision();
+/// What merge says of its map. A map that begins anew counts its revisions anew: then nobody can tell.
+void note_revision(ReplanWait& wait, const MapEdits& said) {
+  if (wait.boot_id == 0) wait.boot_id = said.boot_id;
+  if (said.boot_id != wait.boot_id) return wait.revision.reset();
+  if (!wait.revision && said.boot_id != 0 && said.edit_revision >= wait.correction) wait.revision = said.map_revision;
+}
+
+/// @param correction its revision, as merge answered it.
+void await_replan(Desk& desk, std::shared_ptr<ReplanWait> wait, std::int64_t correction) {
+  wait->correction = correction;
   wait->until = desk.now() + kReplanPatience;
   const auto alive = std::make_shared<bool>(true);
   auto owner = std::make_shared<std::shared_ptr<bool>>(alive);
@@ -84,8 +91,7 @@ void await_replan(Desk& desk, std::shared_ptr<ReplanWait> wait, std::int64_t cha
       [&desk, wait, owner] {
         std::vector<PathConsequence> found;
         const bool late = desk.now() >= wait->until;
-        const std::int64_t now = desk.world.map().revision();
-        if (!wait->revision && now > wait->asked_at) wait->revision = now;
+        note_revision(*wait, desk.world.map_edits());
         std::size_t seen = 0;
         for (const auto& [robot, number] : wait->before) {
           const concord::Path* path = desk.world.active_path(robot);
@@ -106,7 +112,7 @@ void await_replan(Desk& desk, std::shared_ptr<ReplanWait> wait, std::int64_t cha
 
 std::shared_ptr<ReplanWait> paths_now(Desk& desk) {
   auto wait = std::make_shared<ReplanWait>();
-  wait->asked_at = desk.world.map().revision();
+  wait->boot_id = desk.world.map_edits().boot_id;
   for (const concord::Path* path : desk.world.active_paths()) {
     if (wait->before.size() >= 100) break;
     wait->before[path->robot] = path->plan_number;
@@ -197,7 +203,7 @@ void work_on(Desk& desk, const Ask& ask, const ObstacleAddRequest& request) {
         return take_back(desk, ask, id, Code::kTimeout, "whether robots have a way around it was not said in 5 s");
       desk.hub.answer(ask, ObstacleAddAnswer{id, answer.revision, answer.count, paths});
     };
-    await_replan(desk, wait, answer.count);
+    await_replan(desk, wait, answer.revision);
   });
 }
 
@@ -210,7 +216,7 @@ void work_on(Desk& desk, const Ask& ask, const ObstacleRemoveRequest& request) {
     wait->done = [&desk, ask, answer](const std::vector<PathConsequence>& paths, bool) {
       desk.hub.answer(ask, ObstacleRemoveAnswer{answer.revision, paths});
     };
-    await_replan(desk, wait, answer.count);
+    await_replan(desk, wait, answer.revision);
   });
 }
 

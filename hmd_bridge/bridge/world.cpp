@@ -82,6 +82,8 @@ void World::hear() {
   const std::string& self = context_.process;
   listen<AgentList>(bus, counters, self, "out/agents",
                     [this](const std::string&, const AgentList& list) { take_agents(list); });
+  listen<MapEdits>(bus, counters, self, "out/map_edits",
+                   [this](const std::string&, const MapEdits& edits) { map_edits_ = edits; });
   listen<MapPose>(bus, counters, self, "out/pose/.*", [this](const std::string&, const MapPose& pose) {
     if (poses_.size() >= kMaxRobots && !poses_.contains(pose.agent)) return;
     poses_.insert_or_assign(pose.agent, SeenPose{pose.T_map_base, pose.utime, context_.bus.now()});

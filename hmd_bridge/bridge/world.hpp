@@ -13,7 +13,7 @@
 #include "bridge/things.hpp"
 #include "bus/brick_stream.hpp"
 #include "bus/list_stream.hpp"
-#include "bus/messages.hpp"
+#include "bus/messages_map.hpp"
 #include "bus/process.hpp"
 #include "session/hub.hpp"
 
@@ -86,6 +86,9 @@ class World {
   [[nodiscard]] std::int64_t corrections() const { return corrections_; }
   void note_correction(std::int64_t revision) { corrections_ = std::max(corrections_, revision); }
 
+  /// Since when the map stream holds people's corrections, as merge said it last; boot_id 0: it has not yet.
+  [[nodiscard]] const MapEdits& map_edits() const { return map_edits_; }
+
   [[nodiscard]] LayerCopy& map() { return map_; }
   [[nodiscard]] LayerCopy& grid() { return grid_; }
   /// The layer of an agent's submap, heard from now on. Null: there are too many, or no such agent.
@@ -131,6 +134,7 @@ class World {
   std::string told_agents_, told_processes_, told_poses_;
   std::map<std::int64_t, std::string> told_people_;
   std::int64_t corrections_ = 0;
+  MapEdits map_edits_;
 };
 
 }  // namespace concord::hmd

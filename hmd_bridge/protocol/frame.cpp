@@ -66,34 +66,43 @@ Bytes make_frame(const FrameHead& head, const Bytes& payload) {
   return out;
 }
 
-Result<BinaryFrame> read_frame(ByteSpan bytes) {
+Result<PackedFrame> read_packed(ByteSpan bytes) {
   if (bytes.size() < kFrameHeader) return malformed("a binary frame begins with a header of 24 bytes");
   const std::uint8_t kind = bytes[0], flags = bytes[1], level = bytes[2];
   if (!is_kind(kind)) return malformed("no kind of frame has this number");
   if ((flags & ~(kDeflated | kWhole)) != 0 || level >= kLevels || bytes[3] != 0)
     return malformed("header bits that mean nothing");
   ByteSpan in = bytes.subspan(4);
-  BinaryFrame frame;
+  PackedFrame frame;
+  frame.deflated = (flags & kDeflated) != 0;
   frame.head.kind = static_cast<FrameKind>(kind);
   frame.head.whole = (flags & kWhole) != 0;
   frame.head.level = level;
   frame.head.stream = *read_le<std::uint32_t>(in);
   frame.head.count = *read_le<std::uint32_t>(in);
-  const std::size_t size = *read_le<std::uint32_t>(in);
+  frame.size = *read_le<std::uint32_t>(in);
   frame.head.revision = *read_le<std::int64_t>(in);
   if (frame.head.revision < 0) return malformed("a revision or sequence is not negative");
-  if (size > kMaxInflatedBytes) return refuse(Code::kTooLarge, "a payload has at most 16 MiB");
-  if ((flags & kDeflated) == 0) {
-    if (in.size() != size) return malformed("the payload is not as long as the header says");
-    frame.payload.assign(in.begin(), in.end());
-    return frame;
-  }
+  if (frame.size > kMaxInflatedBytes) return refuse(Code::kTooLarge, "a payload has at most 16 MiB");
+  if (!frame.deflated && in.size() != frame.size) return malformed("the payload is not as long as the header says");
   // Deflate makes at most about 1032 of one byte: what claims more is no payload, and gets no memory.
-  if (size / 1040 > in.size()) return malformed("the payload cannot inflate to what the header says");
-  auto inflated = inflate(in, size);
-  if (!inflated) return tl::unexpected(std::move(inflated.error()));
-  frame.payload = std::move(*inflated);
+  if (frame.deflated && frame.size / 1040 > in.size())
+    return malformed("the payload cannot inflate to what the header says");
+  frame.body.assign(in.begin(), in.end());
   return frame;
+}
+
+Result<BinaryFrame> unpack(PackedFrame packed) {
+  if (!packed.deflated) return BinaryFrame{packed.head, std::move(packed.body)};
+  auto inflated = inflate(packed.body, packed.size);
+  if (!inflated) return tl::unexpected(std::move(inflated.error()));
+  return BinaryFrame{packed.head, std::move(*inflated)};
+}
+
+Result<BinaryFrame> read_frame(ByteSpan bytes) {
+  auto packed = read_packed(bytes);
+  if (!packed) return tl::unexpected(std::move(packed.error()));
+  return unpack(std::move(*packed));
 }
 
 }  // namespace concord::hmd

@@ -102,7 +102,18 @@ struct BinaryFrame {
   FrameHead head;
   Bytes payload;  ///< inflated
 };
-/// Refused: no header (kMalformed), over kMaxInflatedBytes (kTooLarge), a payload that is not what the header says.
+/// As it came: its payload is not looked into yet.
+struct PackedFrame {
+  FrameHead head;
+  bool deflated = false;
+  std::size_t size = 0;  ///< of the payload, inflated
+  Bytes body;
+};
+/// Refused: no header (kMalformed), over kMaxInflatedBytes (kTooLarge), a payload that cannot be what the header says.
+[[nodiscard]] Result<PackedFrame> read_packed(ByteSpan bytes);
+/// Refused: a payload that is not what the header says (kMalformed).
+[[nodiscard]] Result<BinaryFrame> unpack(PackedFrame packed);
+/// Both.
 [[nodiscard]] Result<BinaryFrame> read_frame(ByteSpan bytes);
 
 [[nodiscard]] Bytes block_payload(const BlockContent& content);
@@ -117,6 +128,7 @@ struct BinaryFrame {
 /// Refused: more or less than the header says (kMalformed), over 1024 parts or 500,000 vertices or triangles
 /// (kTooLarge), no number (kNotFinite), no rotation (kBadTransform), beyond 1 km (kOutOfBounds).
 [[nodiscard]] Result<MeshLook> read_mesh(const BinaryFrame& frame);
+/// Refused likewise; at most 4096 chunks.
 [[nodiscard]] Result<VoxelLook> read_voxels(const BinaryFrame& frame);
 /// For clients in C++, and for tests.
 [[nodiscard]] Bytes mesh_payload(const MeshLook& look);

@@ -8,6 +8,7 @@ namespace concord::hmd {
 namespace {
 
 constexpr std::uint32_t kMaxParts = 1024;
+constexpr std::uint32_t kMaxChunks = 4096;
 constexpr std::uint32_t kMaxCorners = 500'000;
 constexpr float kMaxReach = 1000;  // metres
 
@@ -199,6 +200,7 @@ Result<MeshLook> read_mesh(const BinaryFrame& frame) {
 }
 
 Result<VoxelLook> read_voxels(const BinaryFrame& frame) {
+  if (frame.head.count > kMaxChunks) return refuse(Code::kTooLarge, "a look has at most 4096 chunks");
   ByteSpan in = frame.payload;
   if (in.size() < 16) return early();
   VoxelLook look;

@@ -1,9 +1,8 @@
 // One connection: the TLS handshake, HTTP requests, and the step up to a WebSocket.
 
-#include <algorithm>
+#include <type_traits>
 
-#include <nlohmann/json.hpp>
-
+#include "server/reply.hpp"
 #include "server/web_socket.hpp"
 
 namespace concord::hmd {
@@ -12,108 +11,8 @@ namespace {
 using boost::asio::ip::tcp;
 using Plain = beast::tcp_stream;
 using Secure = beast::ssl_stream<beast::tcp_stream>;
-using Request = http::request<http::string_body>;
-using Response = http::response<http::span_body<const char>>;
-
-/// The body is not copied: what holds it goes with the answer.
-struct Reply {
-  Response response;
-  std::shared_ptr<const std::string> body;
-};
 
 constexpr std::uint32_t kMaxHeader = 8192, kMaxBody = 4096;
-
-Reply respond(const Request& request, http::status status, const char* type, std::shared_ptr<const std::string> body) {
-  Response response(status, request.version());
-  response.set(http::field::content_type, type);
-  response.set(http::field::cache_control, "no-cache");
-  response.set("X-Content-Type-Options", "nosniff");
-  response.set("Referrer-Policy", "no-referrer");
-  response.set("X-Frame-Options", "DENY");
-  response.set(
-      "Content-Security-Policy",
-      "default-src 'self'; img-src 'self' data: blob:; worker-src 'self' blob:; style-src 'self' 'unsafe-inline'; "
-      "connect-src 'self' ws: wss:; frame-ancestors 'none'");
-  response.keep_alive(request.keep_alive());
-  response.body() = {body->data(), body->size()};
-  response.prepare_payload();
-  return {std::move(response), std::move(body)};
-}
-
-Reply respond_json(const Request& request, http::status status, const nlohmann::json& body) {
-  return respond(request, status, "application/json", std::make_shared<const std::string>(body.dump()));
-}
-
-Reply error(const Request& request, http::status status, const char* what) {
-  return respond_json(request, status, {{"error", what}});
-}
-
-std::string field(const Request& request, http::field name) {
-  const auto value = request[name];
-  return {value.data(), value.size()};
-}
-
-Reply ticket(Server::Core& core, const Request& request, const Peer& peer) {
-  if (!core.gate.may_try(peer.address, core.now()))
-    return error(request, http::status::too_many_requests, "too many tries; wait a moment");
-  constexpr std::string_view kBearer = "Bearer ";
-  const std::string authorization = field(request, http::field::authorization);
-  if (!authorization.starts_with(kBearer))
-    return error(request, http::status::unauthorized, "Authorization: Bearer TOKEN is needed");
-  const auto identity = core.tokens.find(authorization.substr(kBearer.size()));
-  if (!identity) return error(request, http::status::service_unavailable, "the tokens are being written; try again");
-  if (!*identity) return error(request, http::status::unauthorized, "no such token");
-  const auto issued = core.gate.issue(**identity, core.now());
-  if (!issued) return error(request, http::status::service_unavailable, "too many tickets wait; try again in 10 s");
-  return respond_json(request, http::status::ok, {{"ticket", *issued}, {"seconds", Gate::kTicketLife / 1'000'000}});
-}
-
-Reply answer(Server::Core& core, const Request& request, const Peer& peer) {
-  const std::string target(request.target().data(), request.target().size());
-  const std::string scheme = core.config.tls ? "https" : "http";
-  if (!origin_allowed(field(request, http::field::origin), scheme, field(request, http::field::host),
-                      core.config.origins)) {
-    return error(request, http::status::forbidden, "pages from there may not ask here");
-  }
-  if (target == "/api/ticket") {
-    if (request.method() != http::verb::post) return error(request, http::status::method_not_allowed, "POST it");
-    return ticket(core, request, peer);
-  }
-  if (request.method() != http::verb::get && request.method() != http::verb::head) {
-    return error(request, http::status::method_not_allowed, "GET or HEAD");
-  }
-  if (target == "/api/info")
-    return respond_json(request, http::status::ok, {{"protocol", kProtocol}, {"ticket_needed", !peer.local}});
-  const auto file = core.files.find(target);
-  if (file == nullptr) return error(request, http::status::not_found, "there is nothing by this name");
-  return respond(request, http::status::ok, file->type.c_str(),
-                 request.method() == http::verb::head ? std::make_shared<const std::string>() : file->body);
-}
-
-/// Whether a header with a list of names has this one.
-bool lists(const std::string& header, std::string_view name) {
-  for (const auto& token : http::token_list(header)) {
-    if (std::string_view(token.data(), token.size()) == name) return true;
-  }
-  return false;
-}
-
-/// Why a WebSocket is refused; nothing: it is not.
-std::optional<Reply> refusal(Server::Core& core, const Request& request, const Peer& peer) {
-  if (request.target() != "/ws") return error(request, http::status::not_found, "the WebSocket is at /ws");
-  if (!lists(field(request, http::field::sec_websocket_protocol), kProtocol)) {
-    return error(request, http::status::bad_request, "Sec-WebSocket-Protocol must offer hmd.v1");
-  }
-  const std::string scheme = core.config.tls ? "https" : "http";
-  if (!origin_allowed(field(request, http::field::origin), scheme, field(request, http::field::host),
-                      core.config.origins)) {
-    return error(request, http::status::forbidden, "pages from there may not connect here; see bridge.origins");
-  }
-  if (!peer.local && !core.gate.may_try(peer.address, core.now())) {
-    return error(request, http::status::too_many_requests, "too many tries; wait a moment");
-  }
-  return std::nullopt;
-}
 
 template <class Stream>
 class Connection : public std::enable_shared_from_this<Connection<Stream>> {
@@ -163,30 +62,46 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
   /// Who is refused for what they are is a line of the audit; what is not there is nobody's business.
   Reply noted(Reply reply, const Request& request) {
     using S = http::status;
-    const S status = reply.response.result();
+    const S status = reply.status();
     if (status == S::unauthorized || status == S::forbidden || status == S::too_many_requests) {
       const char* what = request.target() == "/api/ticket" ? "ticket"
                          : request.target() == "/ws"       ? "connection"
                                                            : "page";
-      core_->hub.note_refused(address_, what, std::to_string(reply.response.result_int()));
+      core_->hub.note_refused(address_, what, std::to_string(static_cast<unsigned>(status)));
     }
     return reply;
   }
 
+  /// Under way: it stays where it is until the last of it is written.
+  template <class Response>
+  struct Sending {
+    Sending(Response&& which, std::shared_ptr<const std::string> held)
+        : response(std::move(which)), body(std::move(held)) {}
+    Response response;
+    std::shared_ptr<const std::string> body;
+    http::response_serializer<typename Response::body_type> serializer{response};
+  };
+
   void write(Reply reply) {
-    reply_ = std::move(reply);
-    serializer_.emplace(reply_.response);
-    write_some();
+    std::visit(
+        [&](auto& response) {
+          using Response = std::decay_t<decltype(response)>;
+          write_some(std::make_shared<Sending<Response>>(std::move(response), std::move(reply.body)));
+        },
+        reply.response);
   }
 
   /// Who takes some of a large body in time has as much time for the next.
-  void write_some() {
+  template <class Response>
+  void write_some(std::shared_ptr<Sending<Response>> sending) {
     expire();
-    http::async_write_some(stream_, *serializer_, [self = this->shared_from_this()](beast::error_code e, std::size_t) {
-      if (!e && !self->serializer_->is_done()) return self->write_some();
-      if (!e && self->reply_.response.keep_alive()) return self->read();
-      self->end();
-    });
+    auto& serializer = sending->serializer;
+    http::async_write_some(stream_, serializer,
+                           [self = this->shared_from_this(), sending](beast::error_code e, std::size_t) {
+                             if (!e && !sending->serializer.is_done()) return self->write_some(sending);
+                             if (!e && sending->response.keep_alive()) return self->read();
+                             self->end();
+                           });
   }
 
   void end() {
@@ -205,8 +120,6 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
   std::shared_ptr<void> place_;
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::string_body>> parser_;
-  Reply reply_;
-  std::optional<http::response_serializer<http::span_body<const char>>> serializer_;
 };
 
 }  // namespace

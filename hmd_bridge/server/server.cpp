@@ -1,5 +1,7 @@
 #include "server/server_core.hpp"
 
+#include <algorithm>
+
 #include <boost/asio/ip/address.hpp>
 
 #include "bus/site.hpp"
@@ -9,6 +11,8 @@ namespace {
 
 namespace asio = boost::asio;
 using asio::ip::tcp;
+
+constexpr std::size_t kLocalConnections = 32;  ///< that nobody from elsewhere takes
 
 void use_certificate(asio::ssl::context& tls, const Server::Config& config) {
   boost::system::error_code error;
@@ -109,7 +113,9 @@ std::vector<std::string> Server::Core::addresses() const {
 
 std::shared_ptr<void> Server::Core::admit(const std::string& address) {
   const auto same = by_address_.find(address);
-  if (connections_ >= config.max_connections) return nullptr;
+  const std::size_t kept =
+      is_loopback(address) ? 0 : std::min<std::size_t>(kLocalConnections, config.max_connections / 4);
+  if (connections_ >= config.max_connections - kept) return nullptr;
   if (!is_loopback(address) && same != by_address_.end() && same->second >= config.max_connections_per_address)
     return nullptr;
   ++connections_;

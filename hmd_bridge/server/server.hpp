@@ -29,7 +29,7 @@ class Server {
     bool tls = true;
     std::filesystem::path certificate, key;
     std::vector<std::string> origins;
-    std::size_t max_connections = 512;             ///< whatever they do
+    std::size_t max_connections = 512;             ///< whatever they do; some are kept for this machine
     std::size_t max_connections_per_address = 64;  ///< from other machines
     double header_seconds = 10;                    ///< a whole request's header and body
     double idle_seconds = 30;                      ///< of a WebSocket

@@ -48,7 +48,7 @@ Result<void> StaticFiles::add(const std::filesystem::path& folder, const std::st
     bytes_ += bytes->size();
     if (files_.size() >= kMaxFiles) return refuse(Code::kTooLarge, folder.string() + " holds too many files");
     add(prefix + path.generic_string(),
-        {type_of(path), std::make_shared<const std::string>(bytes->begin(), bytes->end())});
+        {type_of(path), std::make_shared<const std::string>(bytes->begin(), bytes->end()), {}});
   }
   if (error) return refuse(Code::kIo, folder.string() + ": " + error.message());
   return {};
@@ -57,10 +57,12 @@ Result<void> StaticFiles::add(const std::filesystem::path& folder, const std::st
 std::shared_ptr<const StaticFiles::File> StaticFiles::model(std::string_view name) const {
   const std::filesystem::path file(name);
   if (!is_plain(std::string(name)) || file.extension() != ".glb") return nullptr;
-  auto bytes = read_whole_file(models_ / file, kMaxModelBytes);
-  if (!bytes) return nullptr;
-  return std::make_shared<const File>(
-      File{type_of(file), std::make_shared<const std::string>(bytes->begin(), bytes->end())});
+  std::error_code error;
+  const auto size = std::filesystem::is_regular_file(models_ / file, error)
+                        ? std::filesystem::file_size(models_ / file, error)
+                        : kMaxModelBytes + 1;
+  if (error || size > kMaxModelBytes) return nullptr;
+  return std::make_shared<const File>(File{type_of(file), nullptr, models_ / file});
 }
 
 std::shared_ptr<const StaticFiles::File> StaticFiles::find(std::string_view target) const {

@@ -11,8 +11,8 @@
 namespace concord::hmd {
 
 /// The files that are served, read whole at the start: a request can name one of these and nothing else, so no path
-/// ever reaches the file system. Models of assets come and go: these are read when they are asked for, by a plain name
-/// in one folder.
+/// ever reaches the file system. Models of assets come and go: these are found when they are asked for, by a plain name
+/// in one folder, and read while they are sent.
 class StaticFiles {
  public:
   static constexpr std::size_t kMaxBytes = 256 << 20;
@@ -21,7 +21,8 @@ class StaticFiles {
 
   struct File {
     std::string type;
-    std::shared_ptr<const std::string> body;
+    std::shared_ptr<const std::string> body;  ///< null: it is on disk
+    std::filesystem::path path = {};          ///< there
   };
 
   /// Adds all files below `folder` as `prefix` and their path there; names that are hidden or hold other letters than

@@ -11,12 +11,10 @@
 #include <boost/beast/ssl.hpp>
 #include <boost/beast/websocket.hpp>
 
-#include "server/server_core.hpp"
+#include "server/reply.hpp"
 
 namespace concord::hmd {
 
-namespace beast = boost::beast;
-namespace http = beast::http;
 namespace websocket = beast::websocket;
 
 inline std::chrono::steady_clock::duration seconds(double s) {

@@ -39,7 +39,7 @@ Result<Hub::Connection> Hub::open(const Peer& peer, std::int64_t now) {
   now_ = now;
   const auto same = static_cast<std::size_t>(std::count_if(
       links_.begin(), links_.end(), [&](const auto& entry) { return entry.second.peer.address == peer.address; }));
-  if (greeted() >= config_.max_clients) return refuse_busy("there are as many clients as may be");
+  if (!has_place(peer)) return refuse_busy("there are as many clients as may be");
   if (!peer.local && too_many_wait(peer)) return refuse_busy("too many connections have not said hello yet");
   if (!peer.local && same >= config_.max_clients_per_address)
     return refuse_busy("there are as many clients from this address as may be");
@@ -55,6 +55,11 @@ Result<Hub::Connection> Hub::open(const Peer& peer, std::int64_t now) {
             .refusals = TokenBucket(limits.refusals_per_second, limits.burst_refusals)};
   links_.emplace(++last_connection_, std::move(link));
   return last_connection_;
+}
+
+bool Hub::has_place(const Peer& peer) const {
+  const std::size_t kept = peer.local ? 0 : std::min<std::size_t>(kLocalPlaces, config_.max_clients / 4);
+  return greeted() < config_.max_clients - kept;
 }
 
 std::size_t Hub::greeted() const {
@@ -154,7 +159,7 @@ void Hub::binary(Connection connection, ByteSpan bytes, std::int64_t now) {
   Session* session = link.session ? find(*link.session) : nullptr;
   if (session == nullptr)
     return close(connection, link, 1002, Code::kBadMessage, "the first frame must be the request hello");
-  const auto frame = read_frame(bytes);
+  auto frame = read_packed(bytes);
   if (!frame) {
     // The id is where it is, whatever else is wrong.
     ByteSpan at = bytes.size() >= 8 ? bytes.subspan(4) : ByteSpan();
@@ -178,7 +183,7 @@ void Hub::binary(Connection connection, ByteSpan bytes, std::int64_t now) {
   if (!may(session->identity.role, info->role)) return no(Code::kDenied, "who only looks cannot map");
   if (session->pending.size() >= kMaxPending) return no(Code::kBusy, "64 requests wait for their answers");
   session->pending.emplace(id, Session::Pending{info->name, {}});
-  handlers_.on_upload({session->person, id}, *frame);
+  handlers_.on_upload({session->person, id}, std::move(*frame));
 }
 
 void Hub::take_notice(Session& session, const NoticeBody& notice) {

@@ -35,7 +35,7 @@ class Hub {
   struct Config {
     SessionLimits limits;
     Role local_role = Role::kEdit;
-    std::size_t max_clients = 64;
+    std::size_t max_clients = 64;  ///< of them four, or a quarter of fewer, are kept for this machine
     std::size_t max_clients_per_address = 16;
     double resolution = 0.05;
   };
@@ -43,6 +43,7 @@ class Hub {
   static constexpr std::int64_t kParked = 120'000'000;     ///< a session outlives its connection by so long
   static constexpr std::size_t kMaxPending = 64;           ///< requests of one client that wait
   static constexpr std::int64_t kMaxParked = 64;
+  static constexpr std::size_t kLocalPlaces = 4;             ///< of max_clients, that nobody from elsewhere takes
   static constexpr std::size_t kMaxUngreeted = 64;           ///< connections that have not said hello, from elsewhere
   static constexpr std::size_t kMaxUngreetedPerNetwork = 8;  ///< of them from one address, or one IPv6 /64
 
@@ -50,8 +51,8 @@ class Hub {
   struct Handlers {
     /// A request that this client may make. It is answered by answer() or refuse(), at once or later.
     std::function<void(const Ask&, const RequestBody&)> on_request;
-    /// A mesh or voxels frame, not yet looked into.
-    std::function<void(const Ask&, const BinaryFrame&)> on_upload;
+    /// A mesh or voxels frame, its payload as it came.
+    std::function<void(const Ask&, PackedFrame)> on_upload;
     std::function<void(Session&)> on_tracking;
     std::function<void(Session&, bool resumed)> on_begin;
     std::function<void(const Session&)> on_end;
@@ -135,6 +136,8 @@ class Hub {
     TokenBucket refusals;
   };
 
+  /// Whether another client of this peer's kind may come in.
+  [[nodiscard]] bool has_place(const Peer& peer) const;
   /// Clients that are in: who has not said hello yet takes no place of theirs.
   [[nodiscard]] std::size_t greeted() const;
   [[nodiscard]] bool too_many_wait(const Peer& peer) const;

@@ -41,7 +41,7 @@ void Hub::greet(Connection connection, Link& link, const ClientRequest& request,
   const auto why = hello.agent ? handlers_.not_for_clients(*hello.agent, identity.role) : std::nullopt;
   if (why) return no(Code::kDenied, why->c_str());
   if (Session* old = resumable(hello, identity)) return begin(connection, link, *old, hello, request.id, true, now);
-  if (greeted() >= config_.max_clients) return no(Code::kBusy, "there are as many clients as may be");
+  if (!has_place(link.peer)) return no(Code::kBusy, "there are as many clients as may be");
   ++last_session_;
   auto [it, fresh] = sessions_.try_emplace(last_session_, last_session_, gate_.new_secret(), identity, config_.limits);
   begin(connection, link, it->second, hello, request.id, false, now);

@@ -42,6 +42,11 @@ bool BrickReceiver::synced() const {
   return digest_heard_ && !unconfirmed_ && (announced_ == 0 || covered_.contains(1, announced_));
 }
 
+std::int64_t BrickReceiver::whole_revision() const {
+  const auto first = covered_.intervals().begin();
+  return first != covered_.intervals().end() && first->first <= 1 ? first->second : 0;
+}
+
 std::int64_t BrickReceiver::missing() const {
   std::int64_t sum = 0;
   for (const auto& [first, last] : covered_.missing(announced_)) sum += last - first + 1;

@@ -73,6 +73,7 @@ class BrickSender {
   /// Sends what the pace allows now instead of at the next timer.
   void send_now();
 
+  [[nodiscard]] std::int64_t boot_id() const { return config_.boot_id; }  ///< of the present epoch
   [[nodiscard]] std::int64_t revision() const { return revision_; }
   [[nodiscard]] std::int64_t bytes_sent() const { return bytes_sent_; }
   /// Everything touched has been sent at least once.
@@ -150,6 +151,8 @@ class BrickReceiver {
   [[nodiscard]] const std::string& frame_id() const { return frame_id_; }
   [[nodiscard]] std::int64_t incarnation() const { return incarnation_; }
   [[nodiscard]] std::int64_t revision() const { return std::max(announced_, covered_.highest()); }
+  /// All versions up to this one have arrived: what is held knows of everything that the sender had changed by then.
+  [[nodiscard]] std::int64_t whole_revision() const;
   /// Versions announced but not received.
   [[nodiscard]] std::int64_t missing() const;
 

@@ -5,8 +5,10 @@
 #include <concord/brick_packet_t.hpp>
 #include <concord/brick_request_t.hpp>
 #include <concord/cloud_t.hpp>
+#include <concord/map_edits_t.hpp>
 #include <concord/octomap_t.hpp>
 
+#include "bus/messages_map.hpp"
 #include "bus/translate.hpp"
 
 namespace concord {
@@ -110,6 +112,26 @@ Decoded<BrickDigest> decode<BrickDigest>(std::span<const std::uint8_t> bytes) {
                      in->brick_count,
                      static_cast<std::uint64_t>(in->content),
                      in->incarnation};
+}
+
+Bytes encode(const MapEdits& value) {
+  map_edits_t out;
+  out.utime = value.utime;
+  out.boot_id = value.boot_id;
+  out.edit_revision = value.edit_revision;
+  out.map_revision = value.map_revision;
+  return wire::to_bytes(out);
+}
+
+template <>
+Decoded<MapEdits> decode<MapEdits>(std::span<const std::uint8_t> bytes) {
+  static constexpr WireField kLayout[] = {fixed(32)};
+  const auto in = wire::from_bytes<map_edits_t>(bytes, kLayout);
+  if (!in) return bad(in.error());
+  if (in->boot_id < 1 || in->edit_revision < 0 || in->map_revision < 0) {
+    return bad(Code::kMalformed, "revisions of the map's edits must not be negative, and come with a boot_id");
+  }
+  return MapEdits{in->utime, in->boot_id, in->edit_revision, in->map_revision};
 }
 
 Bytes encode(const BrickRequest& value, std::int64_t utime) {

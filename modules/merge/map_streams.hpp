@@ -21,6 +21,7 @@ class MapStreams {
   void begin();
   [[nodiscard]] bool begun() const { return begun_; }
 
+  [[nodiscard]] std::int64_t boot_id() const { return map_stream_.boot_id(); }
   [[nodiscard]] std::int64_t revision() const { return map_stream_.revision(); }
   [[nodiscard]] std::int64_t bytes_sent() const { return map_stream_.bytes_sent() + conflict_stream_.bytes_sent(); }
 

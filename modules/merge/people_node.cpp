@@ -4,10 +4,13 @@
 #include <set>
 #include <utility>
 
+#include "bus/messages_map.hpp"
+
 namespace concord {
 namespace {
 
 constexpr std::int64_t kExpirePeriod = 100'000;
+constexpr std::int64_t kSayPeriod = 1'000'000;
 const std::string kLeaseChannel = "in/lease";
 
 /// Of all that it asks, its time left out where that is only when it was asked.
@@ -66,6 +69,7 @@ PeopleNode::PeopleNode(const NodeContext& context, MergeStore& store, People& pe
   say_zones();
   say_leases();
   context_.bus.every(kExpirePeriod, [this] { expire_leases(); });
+  context_.bus.every(kSayPeriod, [this] { say_edits(); });
 }
 
 template <class Request, class Check>
@@ -122,6 +126,7 @@ Result<void> PeopleNode::commit(std::span<const Correction> corrections) {
   if (const auto stored = store_.put(corrections); !stored) return stored;
   follow(corrections);
   map_.refold_and_send();
+  say_edits();
   return {};
 }
 
@@ -175,6 +180,13 @@ void PeopleNode::say_zones() {
   std::vector<Zone> zones;
   for (const auto& [name, zone] : people_.zones()) zones.push_back(zone);
   zone_list_.set(zones);
+}
+
+/// @pre what was made has been folded into the map, as it is with each commit.
+void PeopleNode::say_edits() {
+  if (!map_.begun()) return;
+  context_.bus.publish("out/map_edits",
+                       encode(MapEdits{context_.bus.now(), map_.boot_id(), people_.revision(), map_.revision()}));
 }
 
 void PeopleNode::say_leases() { lease_list_.set(people_.leases().list()); }

@@ -43,6 +43,7 @@ class PeopleNode {
   void follow(std::span<const Correction> corrections);
   void say_zones();
   void say_leases();
+  void say_edits();
   void expire_leases();
 
   NodeContext context_;

@@ -76,12 +76,14 @@ struct Stack {
 bool says(const std::string& text, const char* what) { return text.find(what) != std::string::npos; }
 
 /// A client that is in, with all credit it may ever want.
-std::unique_ptr<TlsClient> enter(std::uint16_t port) {
+std::unique_ptr<TlsClient> enter(std::uint16_t port, const std::optional<std::string>& agent = {}) {
   auto client = std::make_unique<TlsClient>(port);
   if (client->upgrade("localhost") != 101) throw std::runtime_error("the bridge lets nobody in");
   HelloRequest hello;
   hello.version = kProtocol;
   hello.device = "bench";
+  hello.agent = agent;
+  if (agent) hello.frame_id = "local1";
   client->send_text(request_text(1, hello));
   client->send_text(notice_text(CreditNotice{std::int64_t{1} << 50}));
   if (!client->read_text([](const std::string& t) { return says(t, "\"answer\""); }))
@@ -107,6 +109,43 @@ std::int64_t look(TlsClient& client, std::int64_t& id, std::vector<std::shared_p
 }
 
 using Stop = std::shared_future<void>;
+
+/// A look that costs most for its 2 kB: sheets one above the other, as many cells as one may meet.
+Bytes costly_look() {
+  MeshLook look;
+  look.T_own_sensor.translation() = Eigen::Vector3d(0, 0, 1.5);
+  constexpr float kHalf = 3.5F;
+  for (std::uint32_t i = 0; i < 24; ++i) {
+    const float z = 0.1F * static_cast<float>(i) + 0.02F;
+    look.parts.push_back({i + 1,
+                          {{-kHalf, -kHalf, z}, {kHalf, -kHalf, z}, {kHalf, kHalf, z}, {-kHalf, kHalf, z}},
+                          {{0, 1, 2}, {0, 2, 3}}});
+  }
+  return mesh_payload(look);
+}
+
+struct Uploads {
+  std::int64_t taken = 0, refused = 0;
+};
+
+/// A headset that means no good: costly looks, eight a second, whatever is said to it.
+Uploads upload_much(std::uint16_t port, const Stop& stop) {
+  const auto client = enter(port, "hostile");
+  const Bytes payload = costly_look();
+  Uploads uploads;
+  std::uint32_t id = 1;
+  for (auto due = Clock::now(); stop.wait_until(due) == std::future_status::timeout;
+       due += std::chrono::milliseconds(125)) {
+    const FrameHead head{
+        .kind = FrameKind::kMesh, .stream = ++id, .count = 24, .revision = static_cast<std::int64_t>(id)};
+    client->send_binary(make_frame(head, payload));
+    while (const auto text = client->read(0.001)) {
+      if (says(text->data, "\"occupied\"")) ++uploads.taken;
+      if (says(text->data, "\"RATE\"")) ++uploads.refused;
+    }
+  }
+  return uploads;
+}
 
 struct Load {
   double bytes_per_second = 0;
@@ -208,7 +247,12 @@ int run(int clients, int rounds, std::int64_t voxels, bool json) {
       }
     });
   };
+  std::promise<void> over;
+  std::future<Uploads> uploading =
+      std::async(std::launch::async, [&, stop = over.get_future().share()] { return upload_much(rig.port(), stop); });
   const Load bridge = run_load(clients, client_of_bridge, edits);
+  over.set_value();
+  const Uploads uploads = uploading.get();
   const std::int64_t memory_grown = resident_kilobytes() - memory_before;
 
   BareServer bare(rig.folder() / "cert.pem", rig.folder() / "key.pem", frames);
@@ -242,6 +286,8 @@ int run(int clients, int rounds, std::int64_t voxels, bool json) {
                        {"voxels", voxels},
                        {"clients", clients},
                        {"stalled_clients", 1},
+                       {"costly_looks", uploads.taken},
+                       {"costly_looks_refused", uploads.refused},
                        {"bridge_mb_per_s", bridge.bytes_per_second / 1e6},
                        {"bare_mb_per_s", plain.bytes_per_second / 1e6},
                        {"ack_p95_ms", ack},

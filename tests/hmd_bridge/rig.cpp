@@ -22,6 +22,7 @@ class Rig::Parts {
     std::ofstream(folder / "cert.pem") << made.certificate;
     std::ofstream(folder / "key.pem") << made.key;
     std::filesystem::create_directories(folder / "web");
+    std::filesystem::create_directories(folder / "models");
     std::ofstream(folder / "web" / "index.html") << "<!doctype html><title>page</title>";
     std::ofstream(folder / "secret.txt") << "secret";
     std::future<void> up = ready.get_future();
@@ -49,9 +50,10 @@ class Rig::Parts {
     Gate gate(random_secret);
     Hub::Config hub = hub_config(site);
     hub.local_role = options.local_role;
-    BridgeNode node(context("hmd-bridge"), gate, hub);
+    BridgeNode node(context("hmd-bridge"), gate, hub, std::launch::async);
     StaticFiles files;
     (void)files.add(folder / "web", "/");
+    files.serve_models("/models/", folder / "models");
     Server::Config config;
     config.certificate = folder / "cert.pem";
     config.key = folder / "key.pem";

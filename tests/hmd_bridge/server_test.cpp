@@ -4,6 +4,13 @@
 #include <netinet/in.h>
 #include <sys/socket.h>
 
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
+
 #include "protocol/control.hpp"
 #include "rig.hpp"
 #include "tls_client.hpp"
@@ -207,6 +214,66 @@ TEST_F(Served, WhoSendsSlowlyIsCutOff) {
   while (silent.read(8)) {
   }
   EXPECT_EQ(silent.close_code(), 1008) << "no hello within 5 s";
+}
+
+class Models : public Served {
+ protected:
+  void SetUp() override { make("large", kBytes); }
+  void make(const std::string& name, std::size_t bytes) {
+    const auto file = rig.folder() / "models" / (name + ".glb");
+    std::ofstream out(file);
+    out.close();
+    std::filesystem::resize_file(file, bytes);
+  }
+  static constexpr std::size_t kBytes = 60 << 20;
+  static constexpr int kWindow = 64 << 10;
+};
+
+TEST_F(Models, WhoTakesSlowlyWhatIsLargeIsServedToTheEnd) {
+  TlsClient slow(rig.port(), kWindow);
+  ASSERT_TRUE(slow.http_begin(get("/models/large.glb")).ends_with("200"));
+  const auto start = std::chrono::steady_clock::now();
+  const std::size_t got = slow.read_slowly(kBytes, kBytes / 2.5);
+  EXPECT_GE(got, kBytes);
+  EXPECT_GT(std::chrono::steady_clock::now() - start, std::chrono::seconds(2)) << "longer than any of it may take";
+}
+
+TEST_F(Models, WhoStopsTakingIsCutOff) {
+  TlsClient stuck(rig.port(), kWindow);
+  ASSERT_TRUE(stuck.http_begin(get("/models/large.glb")).ends_with("200"));
+  // Another is served meanwhile, for longer than anybody may stand still.
+  TlsClient slow(rig.port(), kWindow);
+  ASSERT_TRUE(slow.http_begin(get("/models/large.glb")).ends_with("200"));
+  EXPECT_GE(slow.read_slowly(kBytes, kBytes / 2.5), kBytes);
+  EXPECT_LT(stuck.read_slowly(kBytes, 1e12), kBytes) << "there is no more than what was under way";
+}
+
+TEST_F(Models, BytesForOneNetworkAreBounded) {
+  std::vector<std::unique_ptr<TlsClient>> clients;
+  std::vector<std::string> said;
+  for (int i = 0; i < 6; ++i) {
+    clients.push_back(std::make_unique<TlsClient>(rig.port(), kWindow));
+    said.push_back(clients.back()->http_begin(get("/models/large.glb")));
+  }
+  EXPECT_TRUE(said.front().ends_with("200"));
+  EXPECT_TRUE(said.back().ends_with("429")) << "6 x 60 MB at once: " << said.back();
+}
+
+TEST_F(Served, WhoIsRefusedAtTheDoorIsALineOfTheAudit) {
+  std::ostringstream log;
+  const auto sink = std::make_shared<spdlog::sinks::ostream_sink_mt>(log);
+  spdlog::default_logger()->sinks().push_back(sink);
+  EXPECT_EQ(ticket_for("concord_wrong"), "401");
+  EXPECT_EQ(TlsClient(rig.port()).upgrade("localhost", "https://evil.example"), 403);
+  for (int i = 0; i < 40; ++i) (void)ticket_for("concord_guess");
+  std::string lines;
+  rig.in_server([&](BridgeNode&, Bus&) {
+    spdlog::default_logger()->sinks().pop_back();
+    lines = log.str();
+  });
+  EXPECT_NE(lines.find("audit: refused from=127.0.0.1 request=ticket outcome=401"), std::string::npos) << lines;
+  EXPECT_NE(lines.find("audit: refused from=127.0.0.1 request=connection outcome=403"), std::string::npos) << lines;
+  EXPECT_NE(lines.find("audit: refused from=127.0.0.1 request=ticket outcome=429"), std::string::npos) << lines;
 }
 
 TEST_F(Served, OneWhoReadsNothingHoldsNobodyUp) {

@@ -3,6 +3,9 @@
 #include <boost/asio/connect.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/read.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/write.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/ssl.hpp>
@@ -28,10 +31,13 @@ class TlsClient::Parts {
  public:
   using Stream = websocket::stream<beast::ssl_stream<beast::tcp_stream>>;
 
-  explicit Parts(std::uint16_t port) : tls(asio::ssl::context::tls_client), ws(io, tls) {
+  Parts(std::uint16_t port, int window) : tls(asio::ssl::context::tls_client), ws(io, tls) {
     tls.set_verify_mode(asio::ssl::verify_none);
     beast::error_code error;
-    beast::get_lowest_layer(ws).socket().connect({asio::ip::make_address("127.0.0.1"), port}, error);
+    tcp::socket& socket = beast::get_lowest_layer(ws).socket();
+    socket.open(tcp::v4(), error);
+    if (window > 0) socket.set_option(asio::socket_base::receive_buffer_size(window), error);
+    socket.connect({asio::ip::make_address("127.0.0.1"), port}, error);
     if (!error) ok = wait([this](auto done) { ws.next_layer().async_handshake(asio::ssl::stream_base::client, done); });
   }
 
@@ -65,7 +71,7 @@ class TlsClient::Parts {
   beast::flat_buffer in;
 };
 
-TlsClient::TlsClient(std::uint16_t port) : parts_(std::make_unique<Parts>(port)) {}
+TlsClient::TlsClient(std::uint16_t port, int window) : parts_(std::make_unique<Parts>(port, window)) {}
 TlsClient::~TlsClient() {
   beast::get_lowest_layer(parts_->ws).close();
   parts_->io.restart();
@@ -86,6 +92,33 @@ std::string TlsClient::http(const std::string& request) {
   std::ostringstream out;
   out << parser.get();
   return out.str();
+}
+
+std::string TlsClient::http_begin(const std::string& request) {
+  if (!send_raw(request)) return {};
+  std::string line(12, ' ');
+  return parts_->wait([&](auto done) { asio::async_read(parts_->ws.next_layer(), asio::buffer(line), done); }) ? line
+                                                                                                               : "";
+}
+
+std::size_t TlsClient::read_slowly(std::size_t bytes, double bytes_per_second) {
+  std::vector<char> piece(32 << 10);
+  const auto start = std::chrono::steady_clock::now();
+  asio::steady_timer pace(parts_->io);
+  std::size_t got = 0;
+  while (got < bytes) {
+    const std::size_t before = got;
+    const bool more = parts_->wait([&](auto done) {
+      parts_->ws.next_layer().async_read_some(asio::buffer(piece), [&got, done](beast::error_code e, std::size_t n) {
+        got += n;
+        done(e);
+      });
+    });
+    if (!more && got == before) break;
+    pace.expires_at(start + milliseconds(static_cast<double>(got) / bytes_per_second));
+    parts_->wait([&](auto done) { pace.async_wait(done); });
+  }
+  return got;
 }
 
 int TlsClient::upgrade(const std::string& host, const std::string& origin, const std::string& protocol) {

@@ -16,7 +16,8 @@ namespace concord::hmd {
 /// certificate.
 class TlsClient {
  public:
-  explicit TlsClient(std::uint16_t port);
+  /// @param window bytes that the system takes in for it before it reads; 0: as usual
+  explicit TlsClient(std::uint16_t port, int window = 0);
   ~TlsClient();
   TlsClient(const TlsClient&) = delete;
   TlsClient& operator=(const TlsClient&) = delete;
@@ -25,6 +26,10 @@ class TlsClient {
   bool send_raw(const std::string& bytes);
   /// A whole HTTP answer to `request`, with its header; empty if the server closed.
   std::string http(const std::string& request);
+  /// The first line of the answer to `request`; what comes after it stays unread.
+  std::string http_begin(const std::string& request);
+  /// Reads at most `bytes` of what comes, at most so many a second. @return how many came before the other side ended.
+  std::size_t read_slowly(std::size_t bytes, double bytes_per_second);
   /// The step up to a WebSocket. @return the HTTP status: 101 if it was made.
   int upgrade(const std::string& host, const std::string& origin = "", const std::string& protocol = "hmd.v1");
 

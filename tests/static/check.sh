@@ -41,7 +41,7 @@ dependencies() {
   done
   sources hmd_bridge | xargs -r grep -HnE '#include "(ingest|align|merge|semantic|planner|agent|cli)/' |
     none 'hmd_bridge includes another process' || failed=1
-  sources modules planner hmd_bridge | grep '\.hpp$' | grep -v '^hmd_bridge/server/web_socket.hpp' | xargs -r grep -HnE '#include <(pcl|ompl|boost/beast)/' |
+  sources modules planner hmd_bridge | grep '\.hpp$' | grep -vE '^hmd_bridge/server/(reply|web_socket).hpp' | xargs -r grep -HnE '#include <(pcl|ompl|boost/beast)/' |
     none 'a header that is slow to compile, in a header' || failed=1
   return "$failed"
 }

@@ -89,6 +89,25 @@ TEST_F(Aligning, WhatCannotBeFoundIsRefusedForItsReason) {
   EXPECT_CODE(ana.ask(AlignRequest{"robot6", "robot5", {}}), "AMBIGUOUS");
 }
 
+TEST_F(Aligning, MapsThatContradictEachOtherAreRefused) {
+  test::Points before = test::room(), after = before;
+  test::add_box(before, {-2.0, -1.9, 0.0}, {1.4, -1.6, 1.1}, false);
+  test::add_box(after, {-2.0, -1.4, 0.0}, {1.4, -1.1, 1.1}, false);
+  lab.agent_maps("robot2", voxels_of(before));
+  lab.agent_maps("robot3", voxels_of(after));
+  EXPECT_CODE(ana.ask(AlignRequest{"robot3", "robot2", kHere}), "DIVERGED");
+  EXPECT_FALSE(agent("robot3")["aligned"].get<bool>());
+  Client bert(lab);
+  become_agent(bert, "quest", false);
+  const VoxelLook look = look_of(voxels_of(after));
+  EXPECT_CODE(bert.upload(FrameKind::kVoxels, static_cast<std::uint32_t>(look.chunks.size()), 0, voxels_payload(look)),
+              "OK");
+  lab.run(3);
+  lab.bus->publish("in/robot2/pose", encode(AgentPose{"robot2", "odom", Transform::Identity(), lab.bus->now()}));
+  lab.bus->deliver();
+  EXPECT_CODE(bert.ask(ReferenceRequest{"robot2", kHere}), "DIVERGED");
+}
+
 TEST_F(Aligning, DecisionsHoldOnlyForWhatStands) {
   lab.agent_maps("robot2", voxels_of(right_part()));
   EXPECT_CODE(ana.ask(AlignAcceptRequest{"none"}), "EXPIRED");

@@ -34,9 +34,11 @@ Lab::Lab(With with, double resolution) {
 
 void Lab::restart_bridge() {
   bridge.reset();
+  bridge_bus = std::make_unique<PartOfBus>(*bus);
   Hub::Config config = hub_config(site);
   config.local_role = Role::kRobot;
-  bridge = std::make_unique<BridgeNode>(NodeContext{*bus, counters, site, "hmd-bridge", bus->now()}, *gate, config);
+  bridge = std::make_unique<BridgeNode>(NodeContext{*bridge_bus, counters, site, "hmd-bridge", bus->now()}, *gate,
+                                        config, std::launch::deferred);
   run(1.5);
 }
 

@@ -17,6 +17,26 @@
 
 namespace concord::hmd {
 
+/// A process's own part of a bus: when it goes, the bus forgets what it was for.
+class PartOfBus final : public Bus {
+ public:
+  explicit PartOfBus(Bus& bus) : bus_(bus) {}
+  using Bus::every, Bus::subscribe;
+  void subscribe(const std::string& channels, Handler handler, int queued, Owner owner) override {
+    bus_.subscribe(channels, std::move(handler), queued, std::move(owner));
+  }
+  void publish(const std::string& channel, std::span<const std::uint8_t> bytes) override {
+    bus_.publish(channel, bytes);
+  }
+  void every(std::int64_t period, Task task, Owner owner) override {
+    bus_.every(period, std::move(task), std::move(owner));
+  }
+  [[nodiscard]] std::int64_t now() const override { return bus_.now(); }
+
+ private:
+  Bus& bus_;
+};
+
 /// The whole stack with the bridge on one lockstep bus, and clients that speak to the bridge's hub without sockets.
 class Lab {
  public:
@@ -51,6 +71,7 @@ class Lab {
   std::unique_ptr<AlignNode> align;
   std::unique_ptr<SemanticNode> semantic;
   std::unique_ptr<Gate> gate;
+  std::unique_ptr<PartOfBus> bridge_bus;
   std::unique_ptr<BridgeNode> bridge;
 
  private:

@@ -1,5 +1,6 @@
 // The headset as mapper, and agents.
 
+#include "bridge/look_judge.hpp"
 #include "bridge_test.hpp"
 
 namespace concord::hmd {
@@ -70,6 +71,69 @@ TEST_F(Bridge, LooksHaveARate) {
   }
   EXPECT_GE(taken, 20);
   EXPECT_LT(taken, 30);
+}
+
+TEST_F(Bridge, LooksAreJudgedBesideTheLoopInOrderAndFewMayWait) {
+  become_agent(ana, "quest", false);
+  const std::int64_t first = ana.last_id() + 1;
+  for (std::int64_t i = 0; i < 3; ++i) {
+    const FrameHead head{
+        .kind = FrameKind::kMesh, .stream = static_cast<std::uint32_t>(ana.next_id()), .count = 1, .revision = i};
+    lab.bridge->hub().binary(ana.connection, make_frame(head, mesh_payload(floor_look())), lab.bus->now());
+  }
+  ana.read();
+  EXPECT_FALSE(ana.answers.contains(first)) << "whoever sends it does not wait for it within the loop";
+  EXPECT_CODE(ana.answers[first + 2], "RATE");
+  lab.run(1);
+  ana.read();
+  EXPECT_CODE(ana.answers[first], "OK");
+  EXPECT_CODE(ana.answers[first + 1], "OK");
+  EXPECT_EQ(ana.answers[first]["answer"]["occupied"], 0);
+  EXPECT_GT(ana.answers[first + 1]["answer"]["occupied"], 0) << "in the order in which they came";
+  EXPECT_CODE(ana.upload(FrameKind::kMesh, 1, 2, mesh_payload(floor_look())), "OK") << "what was refused is sent again";
+}
+
+TEST_F(Bridge, APayloadThatDoesNotInflateIsRefusedWithoutTheOthersWaiting) {
+  become_agent(ana, "quest", false);
+  Bytes frame = make_frame({.kind = FrameKind::kMesh, .stream = static_cast<std::uint32_t>(ana.next_id()), .count = 1},
+                           Bytes(1000, 0));
+  frame.back() ^= 0xFF;
+  lab.bridge->hub().binary(ana.connection, frame, lab.bus->now());
+  lab.run(0.1);
+  ana.read();
+  EXPECT_CODE(ana.answers[ana.last_id()], "BAD_MESSAGE");
+  const VoxelLook many{0.1, 0.9, 0.2, Transform::Identity(), std::vector<VoxelChunk>(4097)};
+  EXPECT_CODE(ana.upload(FrameKind::kVoxels, 4097, 0, voxels_payload(many)), "TOO_LARGE");
+}
+
+TEST(LookJudge, HandsOverALargeLookInTurns) {
+  LockstepBus bus(Lab::kStart);
+  LookJudge judge(bus, std::launch::deferred);
+  VoxelLook look{0.1, 0.9, 0.2, Transform::Identity(), {}};
+  for (int i = 0; i < 1000; ++i) {
+    VoxelChunk& chunk = look.chunks.emplace_back(VoxelChunk{{i, 0, 0}, {}, {}});
+    for (std::size_t part = 0; part < 8; ++part) {
+      const auto cell = (part & 1) * 8 + (part >> 1 & 1) * 8 * 16 + (part >> 2) * 8 * 256;
+      chunk.occupied[cell / 8] = 1;
+    }
+  }
+  const Bytes bytes = make_frame({.kind = FrameKind::kVoxels, .stream = 1, .count = 1000}, voxels_payload(look));
+  std::size_t bricks = 0, most = 0, since = 0;
+  std::int64_t occupied = 0;
+  ASSERT_TRUE(judge.offer({"quest", std::make_shared<RoomMapper>(0.1), false, read_packed(bytes).value(),
+                           [&](BrickIndex, Brick) { ++since; },
+                           [&](const Result<void>& taken, std::int64_t n) {
+                             EXPECT_TRUE(taken);
+                             occupied = n;
+                           }}));
+  for (int i = 0; i < 20 && occupied == 0; ++i) {
+    bus.advance_to(bus.now() + 5'000);
+    most = std::max(most, since);
+    bricks += std::exchange(since, 0);
+  }
+  EXPECT_EQ(occupied, 8000);
+  EXPECT_EQ(bricks, 8000u);
+  EXPECT_EQ(most, LookJudge::kBricksOfATurn);
 }
 
 TEST_F(Bridge, AnEmptyLookAfterARestartLeavesTheSubmapAlone) {

@@ -54,6 +54,28 @@ TEST_F(Working, APathIsFollowedThroughItsChanges) {
   EXPECT_CODE(ana.ask(PathRequest{"robot1", Frame::kMap, false}), "OK");
 }
 
+TEST_F(Working, APathSaysHowLongItTakesWhatItKeepsAwayFromAndHowFarOneGets) {
+  EXPECT_CODE(ana.ask(ZoneAddRequest{"dock", ZoneKind::kNoGo, Frame::kMap, Box{{2.8, 0, 0}, {3.2, 0.6, 1}}}), "OK");
+  lab.run(1);
+  const Json goal = ana.ask(GoalRequest{"robot1", Frame::kMap, Pose{{5, 1, 0}, {0, 0, 0, 1}}});
+  ASSERT_TRUE(has_code(goal, "OK"));
+  const Json path = goal["answer"]["path"];
+  EXPECT_NEAR(path["seconds"].get<double>() * lab.site.agent("robot1").speed, path["length"].get<double>(), 0.01);
+  EXPECT_EQ(path["zones"], Json({"dock"}));
+  EXPECT_FALSE(path.contains("nearest") || path.contains("failed_leg")) << path;
+  EXPECT_CODE(ana.ask(PathRequest{"robot1", Frame::kMap, true}), "OK");
+  EXPECT_CODE(ana.ask(add(box(3.4, -1, 0.1, 3.6, 7, 0.8))), "OK") << "from wall to wall";
+  lab.run(3);
+  ana.read();
+  const Json cut = ana.events["path"]["path"];
+  EXPECT_NE(cut["status"], "OK") << cut;
+  EXPECT_EQ(cut["failed_leg"], 0) << cut;
+  ASSERT_TRUE(cut.contains("nearest")) << cut;
+  EXPECT_GT(cut["nearest"][0], 2.5) << "this side of the wall";
+  EXPECT_LT(cut["nearest"][0], 3.4);
+  EXPECT_FALSE(cut.contains("seconds"));
+}
+
 TEST_F(Working, APathIsSaidAnewInOnesOwnFrameWhenThatLiesElsewhere) {
   Client bert(lab);
   become_agent(bert, "headset1", true);  // a metre off along x
@@ -115,6 +137,101 @@ TEST_F(Working, AnObstacleOfWhichNoPlannerSaysWhatItDoesIsTakenBack) {
   lab.run(1);
   const Json map = ana.ask(SceneGetRequest{Frame::kMap, {3.1, 1.5, 0.5}, 0.3});
   EXPECT_TRUE(code_of_answer(map) == "OK" && map["answer"]["voxels"]["boxes"].empty()) << map;
+}
+
+/// Merge and the planner, played by hand: what others change meanwhile does not pass for one's own obstacle.
+class PlayedStack : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(code_of_answer(ana.hello()), "OK");
+    sender_ = std::make_unique<BrickSender>(
+        *lab.bus, lab.counters, BrickSender::Config{"out/map", lab.site.resolution, 5e6, lab.bus->now()}, map_);
+    sender_->begin("map");
+    lab.bus->subscribe("in/edit", [this](const std::string&, auto bytes) { asked_ = decode<EditOf>(bytes)->id; });
+    say_edits(5);
+    say_path();
+  }
+  using EditOf = concord::EditRequest;
+  void change(int x) {
+    map_.set({x, 0, 0}, Brick::uniform(first_voxel(), kPinnedOccupied));
+    sender_->touch({x, 0, 0});
+    lab.run(0.3);
+  }
+  static VoxelMask first_voxel() {
+    VoxelMask mask{};
+    mask[0] = 1;
+    return mask;
+  }
+  void say_edits(std::int64_t correction) {
+    lab.bus->publish("out/map_edits", encode(MapEdits{lab.bus->now(), boot_id_, correction, sender_->revision()}));
+    lab.run(0.1);
+  }
+  void say_path() {
+    concord::Path path;
+    path.id = "old";
+    path.robot = "robot2";
+    path.active = true;
+    path.status = "OK";
+    path.map_revision = sender_->revision();
+    lab.bus->publish("out/path/robot2", encode(path));
+    lab.run(0.2);
+  }
+  /// Asks, and is answered by merge: it is correction 7.
+  void add_obstacle() {
+    id_ = ana.next_id();
+    lab.bridge->hub().text(ana.connection,
+                           request_text(id_, ObstacleAddRequest{Frame::kMap, Box{{3, 0, 0.1}, {3.2, 3, 0.8}}, {}}),
+                           lab.bus->now());
+    lab.run(0.1);
+    ASSERT_FALSE(asked_.empty());
+  }
+  void grant() {
+    answer(*lab.bus, {asked_, "merge", true, "OK", "pinned", 7, 12});
+    lab.run(0.2);
+  }
+  bool answered() {
+    ana.read();
+    return ana.answers.contains(id_);
+  }
+
+  Lab lab{Lab::kWithoutMerge};
+  Client ana{lab};
+  BrickMap map_;
+  std::unique_ptr<BrickSender> sender_;
+  std::int64_t boot_id_ = 17;
+  std::string asked_;
+  std::int64_t id_ = 0;
+};
+
+TEST_F(PlayedStack, AnothersChangeDoesNotPassForTheObstacle) {
+  add_obstacle();
+  change(10);  // somebody else's
+  say_edits(6);
+  grant();
+  say_path();  // planned on the map with that
+  EXPECT_FALSE(answered()) << ana.answers[id_];
+  change(4);
+  say_edits(7);
+  EXPECT_FALSE(answered()) << ana.answers[id_];
+  change(11);
+  say_path();
+  ASSERT_TRUE(answered());
+  EXPECT_CODE(ana.answers[id_], "OK");
+}
+
+TEST_F(PlayedStack, OfAMapThatBeginsAnewNobodyCanTellWhatHoldsTheObstacle) {
+  add_obstacle();
+  boot_id_ = 18;
+  say_edits(7);
+  grant();
+  for (int i = 0; i < 12 && !answered(); ++i) {
+    say_path();
+    lab.run(0.4);
+  }
+  answer(*lab.bus, {asked_ + "-back", "merge", true, "OK", "undone", 8, 12});
+  lab.run(0.2);
+  ASSERT_TRUE(answered());
+  EXPECT_CODE(ana.answers[id_], "TIMEOUT");
 }
 
 }  // namespace

@@ -265,6 +265,27 @@ TEST_F(Bridge, AHeadsetThatComesBackIsItsAgentAgain) {
   EXPECT_CODE(back.hello("quest"), "OK") << "it is this bridge that speaks for it";
 }
 
+TEST_F(Bridge, PlacesAreKeptForWhoSitsAtThisMachine) {
+  lab.site.bridge.max_clients = 8;
+  lab.restart_bridge();
+  const auto from_elsewhere = [&](int i) {
+    HelloRequest hello;
+    hello.version = kProtocol;
+    hello.ticket = lab.gate->issue({"remote" + std::to_string(i), Role::kView}, lab.bus->now());
+    return hello;
+  };
+  std::vector<Client> remote;
+  for (int i = 0; i < 6; ++i) {
+    remote.emplace_back(lab, Peer{"10.0.0." + std::to_string(i), false});
+    EXPECT_CODE(remote.back().ask(from_elsewhere(i)), "OK");
+  }
+  EXPECT_FALSE(lab.bridge->hub().open({"10.0.0.9", false}, lab.bus->now())) << "the rest is not theirs";
+  Client first(lab), second(lab);
+  EXPECT_CODE(first.hello(), "OK");
+  EXPECT_CODE(second.hello(), "OK");
+  EXPECT_FALSE(lab.bridge->hub().open({"127.0.0.1", true}, lab.bus->now()));
+}
+
 TEST_F(Bridge, ClockTellsWhenItArrived) {
   EXPECT_CODE(ana.hello(), "OK");
   const Json answer = ana.ask(ClockRequest{12.5})["answer"];

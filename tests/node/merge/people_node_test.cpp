@@ -1,5 +1,6 @@
 #include <stdexcept>
 
+#include "bus/messages_map.hpp"
 #include "merge/merge_schema.hpp"
 #include "people_station.hpp"
 #include "store/database.hpp"
@@ -63,6 +64,26 @@ TEST_F(PeopleNodeTest, UndoShowsWhatTheSensorsSay) {
   EXPECT_EQ(undo("u1", "e1", true).code, "EXISTS");
   EXPECT_EQ(undo("u4", "e1").revision, 5);
   EXPECT_EQ(digest(node_->map()), before);
+}
+
+TEST_F(PeopleNodeTest, SaysSinceWhenTheMapHoldsWhatWasMade) {
+  std::vector<MapEdits> said;
+  bus_->subscribe("out/map_edits", [&](const std::string&, auto bytes) { said.push_back(*decode<MapEdits>(bytes)); });
+  const Answer first = add("e1", {1, 1, 1});
+  ASSERT_TRUE(first.ok);
+  ASSERT_FALSE(said.empty()) << "at once";
+  EXPECT_EQ(said.back().edit_revision, first.revision);
+  run();
+  EXPECT_EQ(said.back().map_revision, listener_->revision());
+  EXPECT_EQ(said.back().map_revision, listener_->whole_revision());
+  const auto before = said.back();
+  const std::size_t count = said.size();
+  run(2'000'000);
+  EXPECT_GT(said.size(), count) << "and each second";
+  const std::int64_t undone = undo("u1", "e1").revision;
+  EXPECT_EQ(said.back().edit_revision, undone);
+  EXPECT_GT(said.back().map_revision, before.map_revision);
+  EXPECT_EQ(said.back().boot_id, before.boot_id);
 }
 
 TEST_F(PeopleNodeTest, AnEditInAHeadsetsFrameIsPutIntoTheMap) {

@@ -49,6 +49,18 @@ TEST_F(PlannerOnTheBus, AnswersAndReplansWhenAWallIsBuilt) {
   EXPECT_EQ(answers_.size(), 1U);
 }
 
+TEST_F(PlannerOnTheBus, APathKnowsTheMapAsFarAsItIsWhole) {
+  start_with_zones();
+  map_sender_.begin("map");
+  run_seconds(2);
+  BrickDigest ahead{bus_.now(), map_sender_.boot_id(), "map", 0.1, map_sender_.revision() + 5, 8, 1, 0};
+  bus_.publish("out/map/digest", encode(ahead));
+  bus_.deliver();
+  ask("p1", Eigen::Vector2d(0.4, 0.8), true);
+  ASSERT_EQ(paths_.size(), 1U);
+  EXPECT_EQ(paths_[0].map_revision, map_sender_.revision()) << "not of what was only announced";
+}
+
 TEST_F(PlannerOnTheBus, SaysAKeptPathEverySecondAndWhenItEnds) {
   start_with_zones();
   map_sender_.begin("map");

@@ -3,6 +3,7 @@
 #include "bus/messages_asset.hpp"
 #include "bus/messages_detection.hpp"
 #include "bus/messages_label.hpp"
+#include "bus/messages_map.hpp"
 
 namespace concord::test {
 namespace {
@@ -141,6 +142,7 @@ const std::vector<MessageSample>& message_samples() {
   static const std::vector<MessageSample> kSamples = {
       sample("brick_packet_t", BrickPacket{kTime, 17, "map", 0.05, 3, 9, 2, {1, 2, 3, 255, 0}, 4}),
       sample("brick_digest_t", BrickDigest{kTime, 17, "map", 0.05, 12, 9, 0xFFEEDDCCBBAA9988, 4}),
+      sample("map_edits_t", MapEdits{kTime, 17, 5, 12}),
       sample("brick_request_t", BrickRequest{17, {{1, 2}, {5, 5}, {9, 1'000'000'000'000}}}),
       sample("octomap_t", OctomapMessage{kTime, "odom", 0.1, false, {0, 1, 2, 3}}),
       sample("cloud_t", CloudMessage{kTime, 17, 5, "odom", some_transform(), 12.5, {{1, 2, 3}, {-4, 5.5F, 6}}}),

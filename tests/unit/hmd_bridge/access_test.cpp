@@ -49,6 +49,15 @@ TEST(Gate, TicketsAndAddressesAreBounded) {
   EXPECT_TRUE(gate.may_try("11.0.0.1", kNow + 60'000'000));
 }
 
+TEST(Gate, ANetworkTakesSoManyBytesAndWaits) {
+  Gate gate(random_secret);
+  constexpr std::size_t kModel = 64 << 20;
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(gate.may_take("2001:db8::1", kModel, kNow));
+  EXPECT_FALSE(gate.may_take("2001:db8::2", kModel, kNow)) << "the same network";
+  EXPECT_TRUE(gate.may_take("10.0.0.7", kModel, kNow));
+  EXPECT_TRUE(gate.may_take("2001:db8::2", kModel, kNow + 5'000'000));
+}
+
 TEST(Gate, AnAddressThatTriesTooOftenWaits) {
   Gate gate(random_secret);
   int tries = 0;
@@ -160,7 +169,7 @@ TEST(StaticFiles, OnlyWhatWasThereAtTheStartIsServed) {
   EXPECT_FALSE(files.add(folder.path / "none", "/"));
 }
 
-TEST(StaticFiles, ModelsAreReadWhenTheyAreAskedForByAPlainNameAlone) {
+TEST(StaticFiles, ModelsAreFoundWhenTheyAreAskedForByAPlainNameAlone) {
   const Folder folder;
   std::filesystem::create_directories(folder.path / "gltf" / "sub");
   std::ofstream(folder.path / "secret.glb") << "secret";
@@ -172,10 +181,15 @@ TEST(StaticFiles, ModelsAreReadWhenTheyAreAskedForByAPlainNameAlone) {
   EXPECT_EQ(files.find("/models/x/pallet.glb"), nullptr);
   std::ofstream(folder.path / "gltf" / "pallet.glb") << "model";
   ASSERT_NE(files.find("/models/x/pallet.glb"), nullptr);
-  EXPECT_EQ(*files.find("/models/x/pallet.glb?1")->body, "model");
+  EXPECT_EQ(files.find("/models/x/pallet.glb?1")->path, folder.path / "gltf" / "pallet.glb");
+  EXPECT_EQ(files.find("/models/x/pallet.glb")->body, nullptr) << "it is read while it is sent";
   EXPECT_EQ(files.find("/models/x/pallet.glb")->type, "model/gltf-binary");
-  std::ofstream(folder.path / "gltf" / "pallet.glb") << "another";
-  EXPECT_EQ(*files.find("/models/x/pallet.glb")->body, "another");
+  std::filesystem::create_directory(folder.path / "gltf" / "folder.glb");
+  EXPECT_EQ(files.find("/models/x/folder.glb"), nullptr);
+  std::filesystem::resize_file(folder.path / "gltf" / "pallet.glb", StaticFiles::kMaxModelBytes);
+  EXPECT_NE(files.find("/models/x/pallet.glb"), nullptr);
+  std::filesystem::resize_file(folder.path / "gltf" / "pallet.glb", StaticFiles::kMaxModelBytes + 1);
+  EXPECT_EQ(files.find("/models/x/pallet.glb"), nullptr) << "no model is that large";
   for (const char* target :
        {"/models/x/../secret.glb", "/models/x/sub/secret.glb", "/models/x/secret.txt", "/models/x/", "/models/x/.glb",
         "/models/pallet.glb", "/models/y/pallet.glb", "/models/x//pallet.glb", "/models/x/%2e%2e/secret.glb"}) {

@@ -78,7 +78,7 @@ test("a robot's path is shown, an obstacle forces another", async () => {
   await settled(page, 100);
   await page.getByRole("tab", { name: "Robots" }).click();
   await page.getByLabel("Show its path").first().check();
-  await page.getByText(/6\.3 m, at least 0\.70 m/).waitFor();
+  await page.getByText(/6\.3 m, 12 s, at least 0\.70 m/).waitFor();
   await pageShot(page, "desk-5-path");
   await page.getByRole("tab", { name: "Edit" }).click();
   await page.keyboard.press("Escape");
@@ -89,7 +89,7 @@ test("a robot's path is shown, an obstacle forces another", async () => {
   await page.getByRole("button", { name: "Add as virtual obstacle" }).click();
   await page.getByText(/another way for robot1/).waitFor();
   await page.getByRole("tab", { name: "Robots" }).click();
-  await page.getByText(/7\.2 m, at least 0\.20 m/).waitFor();
+  await page.getByText(/7\.2 m, 14 s, at least 0\.20 m/).waitFor();
   await settled(page);
   await canvasShot(page, "desk-6-other-way");
   assert.deepEqual(errors, []);

@@ -171,7 +171,7 @@ export class FakeServer {
     const blocked = this.map.has([1, 12, 4]);
     const corners: Triple[] = blocked ? [[-2, -0.5, 0], [-1, -0.75, 0], [2, -0.8, 0], [4, 0, 0]] : [[-2, -0.5, 0], [0, 0.6, 0], [4, 0, 0]];
     const points = corners.map((p, i) => ({ p, clearance: i === 0 ? 1 : blocked ? 0.2 : 0.7 }));
-    return { robot, status: "OK", message: "", frame: "map", points, length: blocked ? 7.2 : 6.3, clearance: blocked ? 0.2 : 0.7, plan: "p", plan_number: blocked ? 2 : 1, map_revision: this.revision, active: true };
+    return { robot, status: "OK", message: "", frame: "map", points, length: blocked ? 7.2 : 6.3, clearance: blocked ? 0.2 : 0.7, plan: "p", plan_number: blocked ? 2 : 1, map_revision: this.revision, active: true, seconds: blocked ? 14 : 12, zones: [] };
   }
 
   /** What is labelled. */

@@ -154,10 +154,12 @@ test("places where agents disagree are looked at one after the other, round and 
 });
 
 test("of a path its reason and the planner's message are said, also of one that is there", () => {
-  const path: Path = { robot: "robot1", status: "OK", message: "", frame: "map", points: [], length: 6.32, clearance: 0.254, plan: "p", plan_number: 1, map_revision: 3, active: true };
+  const path: Path = { robot: "robot1", status: "OK", message: "", frame: "map", points: [], length: 6.32, clearance: 0.254, plan: "p", plan_number: 1, map_revision: 3, active: true, zones: [] };
   assert.equal(pathWords(path), "6.3 m, at least 0.25 m of room");
   assert.equal(pathWords({ ...path, active: false, plan_number: 3 }), "6.3 m, at least 0.25 m of room, planned 3 times, a plan only");
   assert.equal(pathWords({ ...path, message: "nothing was heard of the map for 12 s" }), "6.3 m, at least 0.25 m of room; nothing was heard of the map for 12 s");
   assert.equal(pathWords({ ...path, status: "NO_VALID_PATH", message: "the nearest place is 1.2 0.4" }), "No path (NO_VALID_PATH): the nearest place is 1.2 0.4");
   assert.equal(pathWords({ ...path, status: "NO_PATH" }), "No path (NO_PATH)");
+  assert.equal(pathWords({ ...path, seconds: 75.4, zones: ["dock", "gate"] }), "6.3 m, 1 min 15 s, at least 0.25 m of room, keeps away from dock, gate");
+  assert.equal(pathWords({ ...path, status: "NO_VALID_PATH", failed_leg: 1, nearest: [1, 2, 0] }), "No path (NO_VALID_PATH); leg 2 cannot be gone; the nearest place it can reach is marked");
 });

@@ -133,6 +133,30 @@ test("blocks of the map are kept over a lost connection only while the view that
   }
 });
 
+test("a connection at which the page fails again and again is tried ever less often, and the page says so", async () => {
+  const bench = new Bench();
+  bench.link.connect();
+  const waits: number[] = [];
+  for (let i = 0; i < 7; ++i) {
+    await bench.enter();
+    assert.equal(bench.ready.length, i + 1);
+    bench.socket.hear("{");
+    await turn();
+    await turn();
+    const state = bench.link.state.value;
+    assert(state.state === "lost" && /does not understand/.test(state.why), JSON.stringify(state));
+    waits.push(state.seconds);
+    bench.pass(state.seconds * 1000);
+  }
+  assert.deepEqual(waits, [0.5, 1, 2, 4, 8, 10, 10]);
+  await bench.enter();
+  bench.pass(10_000); // it has lasted so long
+  bench.socket.close();
+  await turn();
+  const state = bench.link.state.value;
+  assert(state.state === "lost" && state.seconds === 0.5, "one that was good is tried soon");
+});
+
 test("who looked elsewhere, or away, while there was no connection keeps no blocks", async () => {
   for (const look of [
     (link: Link) => link.request("view", { layer: "map", frame: "map", centre: [5, 0, 0], radii: [8] }),

@@ -3,11 +3,21 @@ import type { Path } from "../../generated/messages";
 import type { App } from "../app";
 import { fromYaw, type Vec3 } from "../base/vec";
 
-/** The planner's message says what else there is to know, also of a path that is there: the zones, the nearest place, that its map is old. */
-export function pathWords({ status, message, length, clearance, plan_number, active }: Path): string {
-  if (status !== "OK") return `No path (${status})${message && `: ${message}`}`;
+/** The planner's message says what else there is to know, also of a path that is there: why, that its map is old. */
+export function pathWords({ status, message, length, clearance, plan_number, active, seconds, zones, failed_leg, nearest }: Path): string {
+  if (status !== "OK") {
+    const leg = failed_leg === undefined || failed_leg === 0 ? "" : `; leg ${failed_leg + 1} cannot be gone`;
+    return `No path (${status})${message && `: ${message}`}${leg}${nearest ? "; the nearest place it can reach is marked" : ""}`;
+  }
+  const time = seconds === undefined ? "" : `, ${duration(seconds)}`;
   const times = plan_number > 1 ? `, planned ${plan_number} times` : "";
-  return `${length.toFixed(1)} m, at least ${clearance.toFixed(2)} m of room${times}${active ? "" : ", a plan only"}${message && `; ${message}`}`;
+  const away = zones.length > 0 ? `, keeps away from ${zones.join(", ")}` : "";
+  return `${length.toFixed(1)} m${time}, at least ${clearance.toFixed(2)} m of room${times}${away}${active ? "" : ", a plan only"}${message && `; ${message}`}`;
+}
+
+export function duration(seconds: number): string {
+  const whole = Math.round(seconds);
+  return whole < 60 ? `${whole} s` : `${Math.floor(whole / 60)} min ${whole % 60} s`;
 }
 
 export async function whatIf(app: App, robot: string): Promise<void> {

@@ -56,7 +56,7 @@ const kNotTaken = 4002;
 const kCreditAhead = 4_000_000;
 const kCheckMs = 10_000;
 const kSilentMs = 25_000;
-const kMaxWaitSeconds = 15;
+const kMaxWaitSeconds = 10;
 
 const kMapStream = 0;
 function looksElsewhere(name: keyof Requests, body: Requests[keyof Requests]): boolean {
@@ -182,7 +182,6 @@ export class Link {
   private welcome(hello: HelloAnswer): void {
     const sameEpoch = this.lastComplete?.epoch === hello.epoch;
     this.hello = hello;
-    this.tries = 0;
     if (!hello.resumed) this.abandon("The connection was lost; the server may have done this all the same: see History.");
     this.state.set({ state: "ready", hello });
     this.grant();
@@ -293,6 +292,10 @@ export class Link {
       ({ t1, t2 }) => this.clock.hear(sent, t1, t2, this.options.now()),
       () => {}, // the next one comes anyhow, and nobody waits for this
     );
-    this.options.later(kCheckMs, () => this.check(socket));
+    this.options.later(kCheckMs, () => {
+      // Only what has lasted a while is good again: one that lets us in and then fails at once is not tried at once.
+      if (this.socket === socket) this.tries = 0;
+      this.check(socket);
+    });
   }
 }

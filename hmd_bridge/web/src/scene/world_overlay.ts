@@ -1,7 +1,9 @@
 /** Draws who and what is there besides voxels: robots, people, zones, leases, paths, detections. In the map's frame. */
-import { ConeGeometry, CylinderGeometry, Group, Mesh, MeshBasicMaterial, Object3D, SphereGeometry } from "three";
-import type { ConflictRegion, Person, RobotPose } from "../../generated/messages";
+import { ConeGeometry, CylinderGeometry, Group, Mesh, MeshBasicMaterial, Object3D, SphereGeometry, TorusGeometry } from "three";
+import type { ConflictRegion, Path, Person, RobotPose } from "../../generated/messages";
+import type { Vec3 } from "../base/vec";
 import { cornersOf, type ConflictTour } from "../edit/conflict_tour";
+import { duration } from "../edit/robot_acts";
 import type { World } from "../link/world";
 import type { Signal } from "../base/signal";
 import { kAllowContact, kAsset, kConflict, kLease, kNoGo, colourOf } from "./colours";
@@ -22,7 +24,7 @@ export class WorldOverlay {
     this.redraw(world.zones, (zones) =>
       zones.map((zone) => this.placed(zone.T_map_zone, shapeObject(zone.volume, this.resolution, zone.zone_kind === "no_go" ? kNoGo : kAllowContact, 0.16))));
     this.redraw(world.leases, (leases) => leases.map((lease) => this.placed(lease.T_map_lease, shapeObject(lease.volume, this.resolution, kLease, 0.05))));
-    this.redraw(world.paths, (paths) => [...paths.values()].filter(({ points }) => points.length > 1).map(pathObject));
+    this.redraw(world.paths, (paths) => [...paths.values()].flatMap(pathObjects));
     this.redraw(conflicts.found, () => (conflicts.region ? [conflictObject(conflicts.region, this.resolution)] : []));
     this.redraw(world.detections, (detections) =>
       detections.map((detection) => {
@@ -52,6 +54,27 @@ export class WorldOverlay {
 function conflictObject(region: ConflictRegion, resolution: number): Object3D {
   const [min, max] = cornersOf(region, resolution);
   return shapeObject({ kind: "box", min, max }, resolution, kConflict, 0.1);
+}
+
+/** The way and how long it takes; or, where there is none, how far the robot gets. */
+export function pathObjects(path: Path): Object3D[] {
+  const { points, seconds, nearest, robot } = path;
+  const colour = colourOf(robot);
+  const end = points.at(-1);
+  if (!end) return nearest ? [reachObject(nearest, colour), raised(nameSprite(`${robot} gets as far as here`, colour, 0.18), nearest)] : [];
+  if (points.length < 2) return [];
+  return [pathObject(path), ...(seconds === undefined ? [] : [raised(nameSprite(duration(seconds), colour, 0.18), end.p)])];
+}
+
+function raised<T extends Object3D>(object: T, [x, y, z]: Vec3): T {
+  object.position.set(x, y, z + 0.4);
+  return object;
+}
+
+function reachObject(p: Vec3, colour: number): Object3D {
+  const ring = new Mesh(new TorusGeometry(0.2, 0.03, 8, 32), new MeshBasicMaterial({ color: colour }));
+  ring.position.set(...p);
+  return ring;
 }
 
 function robotObject({ agent, T_map_base, stale }: RobotPose): Object3D {
