@@ -72,7 +72,7 @@ TEST(Segment, AFloorThatIsSeenThreeVoxelsThickIsNoObject) {
   EXPECT_EQ(propose_object(all, kResolution, {2.9, 0.6, 0.1}).error().code, Code::kEmpty);
   const auto proposal = propose_object(all, kResolution, {3.8, 2.8, 0.41});
   ASSERT_TRUE(proposal);
-  EXPECT_GT(share_of(room.back, proposal->voxels), 0.85);
+  EXPECT_GT(share_of(room.back, proposal->voxels), 0.8);  // 14 of its 17 layers: the lowest are in the floor
   EXPECT_LT(proposal->voxels.count(), 2 * (room.seat.count() + room.back.count()));
 }
 
