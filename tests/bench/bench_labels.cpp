@@ -54,10 +54,7 @@ class World {
     std::vector<double> labels, stored, offs;
     for (std::int32_t i = 0; i < kMore; ++i) {
       labels.push_back(label(next_ + i, false));
-      LabelRequest request;
-      request.op = LabelRequest::Op::kTakeOff;
-      request.of = last_;
-      offs.push_back(ask(request, {}, false));
+      offs.push_back(change(LabelRequest::Op::kTakeOff, last_));
       stored.push_back(label(next_ + i, true));
     }
     out.label_p50 = percentile(labels, 0.5), out.label_p99 = percentile(labels, 0.99);
@@ -67,7 +64,46 @@ class World {
   }
   [[nodiscard]] std::size_t voxels() const { return map_.known_count(); }
 
+  /// Milliseconds that it takes to say what is within 100 m.
+  double within() {
+    LabelQuery query;
+    query.kind = LabelQuery::Kind::kWithin;
+    query.radius = 100;
+    const auto start = Clock::now();
+    if (view_.answer(query)->empty()) throw std::runtime_error("nothing shows");
+    return 1e-3 * microseconds_since(start);
+  }
+  /// The first so many are taken off one by one, and labelled anew. @pre made with one class.
+  void take_off_and_label(std::int32_t many) {
+    for (std::int32_t i = 0; i < many; ++i) {
+      (void)change(LabelRequest::Op::kTakeOff, {1, static_cast<std::uint32_t>(i + 1)});
+      (void)label(i, false);
+    }
+  }
+  /// So many of those that were labelled last come to be another class's.
+  void reassign(std::int32_t many) {
+    LabelRequest other;
+    other.name = "other";
+    (void)ask(other, block(next_), false);
+    const std::uint32_t last = labels_.classes().at(1).instances;
+    for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(many); ++i) {
+      (void)change(LabelRequest::Op::kReassign, {1, last - i}, "other");
+    }
+  }
+  /// Milliseconds that it takes to take off all of a class.
+  double take_off_class() { return 1e-3 * change(LabelRequest::Op::kTakeOff, {1, 0}); }
+
  private:
+  static double microseconds_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+  }
+  double change(LabelRequest::Op op, InstanceId of, const std::string& name = "") {
+    LabelRequest request;
+    request.op = op;
+    request.of = of;
+    request.name = name;
+    return ask(request, {}, false);
+  }
   static constexpr std::int32_t kMore = 200;
 
   static std::filesystem::path file() {
@@ -95,7 +131,7 @@ class World {
         view_.refresh(brick_at(tile, std::countr_zero(bits)));
     }
     last_ = labels_.find(request.id)->of;
-    return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+    return microseconds_since(start);
   }
 
   SemanticStore store_;
@@ -106,6 +142,22 @@ class World {
   Labels labels_{0.05};
   LabelView view_{labels_, map_, 0.05};
 };
+
+nlohmann::json after_many_changes() {
+  World world(10'000, 1);
+  nlohmann::json out;
+  out["within_ms"] = world.within();
+  world.take_off_and_label(9'000);
+  out["within_after_take_offs_ms"] = world.within();
+  world.reassign(5'000);
+  out["within_after_reassigning_ms"] = world.within();
+  out["take_off_class_ms"] = world.take_off_class();
+  std::printf("10000 instances: within %.1f ms, after 9000 take-offs %.1f ms, then 5000 reassigned %.1f ms\n",
+              out["within_ms"].get<double>(), out["within_after_take_offs_ms"].get<double>(),
+              out["within_after_reassigning_ms"].get<double>());
+  std::printf("take off all of a class that had 19000: %.1f ms\n", out["take_off_class_ms"].get<double>());
+  return out;
+}
 
 int main(int argc, char** argv) {
   CLI::App app{"Labelling 200 voxels and taking a label off, in a small and in a large world."};
@@ -123,6 +175,7 @@ int main(int argc, char** argv) {
     out[std::to_string(instances)] = {
         {"label_us", f.label_p50}, {"stored_label_us", f.stored_label_p50}, {"take_off_us", f.take_off_p50}};
   }
+  out["many_changes"] = after_many_changes();
   if (json) std::printf("%s\n", out.dump().c_str());
   return 0;
 }

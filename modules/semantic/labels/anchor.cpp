@@ -20,11 +20,13 @@ template <class There, class Back>
 BrickMasks carried(const std::vector<VoxelIndex>& voxels, There there, Back back) {
   BrickMasks out;
   for (const VoxelIndex from : voxels) {
-    const VoxelIndex to = holding(there(centre(from)));
+    const Eigen::Vector3d at = there(centre(from));
+    const VoxelIndex to = holding(at);
     if (in_bounds(to)) out.insert(to);
     // A centre in a cube of side 1 is less than 0.87 from the cube's own.
     for (int i = 0; i < 27; ++i) {
       const VoxelIndex beside{to.x + i % 3 - 1, to.y + i / 3 % 3 - 1, to.z + i / 9 - 1};
+      if ((centre(beside) - at).squaredNorm() > 1.0) continue;
       if (in_bounds(beside) && holding(back(centre(beside))) == from) out.insert(beside);
     }
   }

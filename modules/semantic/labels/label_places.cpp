@@ -7,16 +7,31 @@
 #include "semantic/labels/labels.hpp"
 
 namespace concord {
+namespace {
+
+/// Metres, or of a rotation's entries: a placement that is said twice may differ in its last bits.
+constexpr double kStep = 1e-9;
+
+/// By the newest placement alone, not by those before it: so where all lies does not depend on what was heard between.
+Transform rounded(const Transform& T) {
+  Transform out = Transform::Identity();
+  out.matrix().topRows<3>() = (T.matrix().topRows<3>() / kStep).array().round() * kStep;
+  return out;
+}
+
+}  // namespace
 
 bool Labels::is_news(const LabelAnchor& where) const {
   const auto frame = frames_.find({where.agent, where.frame_id});
   if (frame == frames_.end() || frame->second.claims.empty()) return false;
-  return !frame->second.T_map_agent || frame->second.T_map_agent->matrix() != where.T_map_agent.matrix();
+  return !frame->second.T_map_agent || frame->second.T_map_agent->matrix() != rounded(where.T_map_agent).matrix();
 }
 
 void Labels::place(const LabelAnchor& where) {
   Frame& frame = frames_[{where.agent, where.frame_id}];
-  frame.T_map_agent = where.T_map_agent;
+  const Transform now = rounded(where.T_map_agent);
+  if (frame.T_map_agent && frame.T_map_agent->matrix() == now.matrix()) return;
+  frame.T_map_agent = now;
   for (const std::uint32_t step : frame.claims) {
     steps_[step].is_astray = true;
     if (!std::exchange(steps_[step].is_queued, true)) to_lay_.push_back(step);

@@ -96,6 +96,9 @@ TEST(Labels, GoAlongWithTheAgentBackAndForthAndLeaveNothingBehind) {
   touched.clear();
   place(labels, now, touched);
   EXPECT_FALSE(labels.is_news({"robot", "f", now}));
+  Transform said_again = now;
+  said_again.translation().x() += 1e-12;
+  EXPECT_FALSE(labels.is_news({"robot", "f", said_again}));
   EXPECT_TRUE(touched.contains(brick_of(claim.voxels.back())));
   EXPECT_EQ(labels.at(claim.voxels[0]), (InstanceId{1, 2}));  // lies on the map
   EXPECT_EQ(labels.at(claim.voxels.back()), std::nullopt);
