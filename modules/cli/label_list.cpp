@@ -48,7 +48,9 @@ nlohmann::json to_json(const LabelInstance& instance, double resolution) {
 std::string to_words(const std::vector<LabelInstance>& instances, double resolution) {
   std::vector<std::vector<std::string>> rows;
   for (const LabelInstance& one : instances) {
-    rows.push_back({one.name, std::to_string(one.of.instance), format_count(one.voxels) + " voxels",
+    const bool is_class = one.of.instance == 0;
+    rows.push_back({one.name, is_class ? "class " + std::to_string(one.of.label) : std::to_string(one.of.instance),
+                    is_class ? "" : format_count(one.voxels) + " voxels",
                     one.voxels > 0 ? to_words(extent(one.min, one.max, resolution)) : "",
                     one.asset.empty() ? "" : "asset " + one.asset});
   }

@@ -122,7 +122,7 @@ Outcome labels(const Options& options, const Common& common) {
   nlohmann::json all = nlohmann::json::array();
   for (const LabelInstance& one : *found) all.push_back(to_json(one, live.site().resolution));
   common.print({{"instances", all}},
-               found->empty() ? "nothing is labelled there" : to_words(*found, live.site().resolution));
+               found->empty() ? "no label shows there" : to_words(*found, live.site().resolution));
   return Exit::kDone;
 }
 
