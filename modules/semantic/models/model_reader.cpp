@@ -172,7 +172,12 @@ Result<TriangleMesh> read_model(ByteSpan bytes, const std::string& kind, const S
   // Asked to divide what is triangles already, release 5.2 may abort.
   if (scene != nullptr && has_polygons(*scene)) scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
   if (scene == nullptr || scene->mRootNode == nullptr) {
-    return refuse(Code::kMalformed, std::string("the model cannot be read: ") + importer.GetErrorString());
+    const std::string why = importer.GetErrorString();
+    if (why.find("bad_alloc") != std::string::npos) {
+      return refuse(Code::kTooLarge,
+                    "the model asks for more memory than a model may have; it is broken, or to be simplified");
+    }
+    return refuse(Code::kMalformed, "the model cannot be read: " + why);
   }
   return Gatherer(*scene).all();
 }
