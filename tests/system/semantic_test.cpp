@@ -144,12 +144,14 @@ TEST_F(SemanticKillsTest, assets_are_each_in_one_place_whoever_is_killed_meanwhi
     EXPECT_TRUE(happens([&] { return is_at(3 + 2 * i, 9) && !is_at(3 + 2 * i, 5); })) << i;
   }
   EXPECT_EQ(counted()["box"], 4);
-  for (int i = 0; i < 2; ++i) {
-    const std::string n = std::to_string(i);
-    ask_and_kill(victim(i), {"asset", "delete", "c" + n, "--id", "d" + n});
-  }
+  ask_and_kill("semantic", {"asset", "delete", "c0", "--id", "d0"});
+  ask_and_kill("merge", {"asset", "delete", "box", "2", "--id", "d1"});
   ask_and_kill("semantic", {"label", "delete", "box", "3", "--id", "d3"});
   EXPECT_TRUE(happens([&] { return counted()["box"] == 1 && is_at(9, 9); })) << concord("labels");
+  EXPECT_EQ(concord("labels --at \"9.5 9.5 0.5\"")["instances"][0]["asset"], "crate");
+  ask_and_kill("semantic", {"label", "take-off", "box"});
+  ask_and_kill("semantic", {"label", "rename", "box", "--as", "crate"});  // of which nothing shows
+  EXPECT_EQ(concord("labels --classes")["instances"][0]["class"], "crate");
 }
 
 TEST_F(SemanticKillsTest, a_thing_is_injected_once_whoever_is_killed_meanwhile) {
