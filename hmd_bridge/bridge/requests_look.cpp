@@ -22,7 +22,8 @@ struct Looked {
 /// The layer that a request means, and where its frame lies in the layer's.
 Granted<Looked> layer_of(Desk& desk, const Ask& ask, const ViewRequest& request) {
   if ((request.layer == Layer::kAgent) != request.agent.has_value())
-    return no(Code::kBadRequest, "agent is given with layer agent alone");
+    return no(Code::kBadRequest,
+              request.agent ? "agent goes with layer agent alone" : "layer agent takes the agent's id");
   if (request.layer == Layer::kAgent) {
     if (desk.world.agent(*request.agent) == nullptr) return no(Code::kNoAgent, "no agent is called " + *request.agent);
     LayerCopy* copy = desk.world.agent_layer(*request.agent);

@@ -18,7 +18,7 @@ Granted<concord::EditRequest> edit_of(Desk& desk, const Ask& ask, const EditRequ
   auto shape = from_hmd(request.shape);
   if (!shape) return no(shape.error());
   if ((request.op == EditOp::kMove) != request.move.has_value())
-    return no(Code::kBadRequest, "move is given with op move alone");
+    return no(Code::kBadRequest, request.move ? "move goes with op move alone" : "op move takes move, how far");
   concord::EditRequest edit;
   edit.id = desk.id(ask);
   edit.author = desk.author(ask);

@@ -82,8 +82,10 @@ void World::hear() {
   const std::string& self = context_.process;
   listen<AgentList>(bus, counters, self, "out/agents",
                     [this](const std::string&, const AgentList& list) { take_agents(list); });
-  listen<MapEdits>(bus, counters, self, "out/map_edits",
-                   [this](const std::string&, const MapEdits& edits) { map_edits_ = edits; });
+  listen<MapEdits>(bus, counters, self, "out/map_edits", [this](const std::string&, const MapEdits& edits) {
+    map_edits_ = edits;
+    note_correction(edits.edit_revision);
+  });
   listen<MapPose>(bus, counters, self, "out/pose/.*", [this](const std::string&, const MapPose& pose) {
     if (poses_.size() >= kMaxRobots && !poses_.contains(pose.agent)) return;
     poses_.insert_or_assign(pose.agent, SeenPose{pose.T_map_base, pose.utime, context_.bus.now()});
@@ -94,9 +96,6 @@ void World::hear() {
     const bool news =
         processes_.size() < kMaxRobots && processes_.insert_or_assign(status.process, context_.bus.now()).second;
     if (news) tell_processes();
-  });
-  listen<Answer>(bus, counters, self, kAnswers, [this](const std::string&, const Answer& answer) {
-    if (answer.ok && answer.process == "merge") note_correction(answer.revision);
   });
 }
 

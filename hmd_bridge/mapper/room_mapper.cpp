@@ -31,7 +31,7 @@ Result<void> check_sequence(std::int64_t sequence, std::int64_t next) {
 
 }  // namespace
 
-Result<std::vector<VoxelIndex>> RoomMapper::cells_of(const MeshPart& part, std::size_t most) const {
+Result<std::vector<VoxelIndex>> RoomMapper::cells_of(const MeshPart& part, std::size_t& budget) const {
   std::vector<VoxelIndex> cells;
   const float bound = static_cast<float>(kMaxVoxel * resolution_ * 0.99);
   for (const auto& triangle : part.triangles) {
@@ -41,7 +41,7 @@ Result<std::vector<VoxelIndex>> RoomMapper::cells_of(const MeshPart& part, std::
       if (p.cwiseAbs().maxCoeff() > bound) return refuse(Code::kOutOfBounds, "a mesh reaches beyond any map");
       corners[i] = p.cast<double>() / resolution_;
     }
-    if (!TriangleCells::append(corners, most, cells) || cells.size() > most) {
+    if (!TriangleCells::append(corners, budget, cells)) {
       return refuse(Code::kTooLarge,
                     "a mesh meets more cells than may be; send the room in parts, or only what is near");
     }
@@ -62,11 +62,10 @@ Result<void> RoomMapper::take(const MeshLook& look, std::int64_t sequence) {
     return refuse(Code::kOutOfBounds, "the sensor is beyond any map");
 
   std::map<std::uint32_t, std::vector<VoxelIndex>> fresh;
-  std::size_t in_all = met_cells_, looked = 0, meshes = meshes_.size();
+  std::size_t in_all = met_cells_, budget = kMaxLookCells, meshes = meshes_.size();
   for (const MeshPart& part : look.parts) {
-    auto cells = cells_of(part, kMaxLookCells - std::min(looked, kMaxLookCells));
+    auto cells = cells_of(part, budget);
     if (!cells) return tl::unexpected(std::move(cells.error()));
-    looked += cells->size();
     in_all += cells->size();
     if (!meshes_.contains(part.number)) ++meshes;
     fresh[part.number] = std::move(*cells);

@@ -22,8 +22,9 @@ class RoomMapper {
   static constexpr int kBegin = 50, kHit = 5, kMiss = 1, kExists = 60, kFull = 100;  ///< percent
   static constexpr double kReach = 5.0;                                              ///< metres
   static constexpr std::size_t kMaxCells = 4'000'000;                                ///< that all meshes meet
-  static constexpr std::size_t kMaxLookCells = 500'000;  ///< that the meshes of one look may look at
-  static constexpr std::size_t kMaxRays = 2'000;         ///< of one look; of more met cells each n-th, in turns
+  static constexpr std::size_t kMaxLookCells =
+      2'000'000;                                  ///< that are looked at for the triangles of one look, each time
+  static constexpr std::size_t kMaxRays = 2'000;  ///< of one look; of more met cells each n-th, in turns
   static constexpr std::size_t kMaxBricks = 200'000;
   static constexpr std::size_t kMaxMeshes = 4096;
 
@@ -48,7 +49,7 @@ class RoomMapper {
   using Cells = std::array<std::uint8_t, kBrickVoxels>;
   static constexpr std::uint8_t kUnknownCell = 0, kFreeCell = 1;
 
-  [[nodiscard]] Result<std::vector<VoxelIndex>> cells_of(const MeshPart& part, std::size_t most) const;
+  [[nodiscard]] Result<std::vector<VoxelIndex>> cells_of(const MeshPart& part, std::size_t& budget) const;
   void judge(const std::unordered_map<BrickIndex, VoxelMask, IndexHash>& met, const Eigen::Vector3d& sensor);
   void cast(const std::unordered_map<BrickIndex, VoxelMask, IndexHash>& met, const std::vector<VoxelIndex>& ends,
             const Eigen::Vector3d& sensor);

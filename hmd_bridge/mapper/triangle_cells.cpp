@@ -33,7 +33,7 @@ bool meets(const TriangleCells::Corners& corners, VoxelIndex cell) {
   return true;
 }
 
-bool TriangleCells::append(Corners corners, std::size_t most, std::vector<VoxelIndex>& out) {
+bool TriangleCells::append(Corners corners, std::size_t& budget, std::vector<VoxelIndex>& out) {
   for (Eigen::Vector3d& corner : corners) corner.array() += kOnFace;
   const Eigen::Vector3d low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]);
   const Eigen::Vector3d high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]);
@@ -44,7 +44,6 @@ bool TriangleCells::append(Corners corners, std::size_t most, std::vector<VoxelI
   normal.cwiseAbs().maxCoeff(&k);
   const int i = (k + 1) % 3, j = (k + 2) % 3;
   const bool flat = normal[k] == 0;  // a line or a point: its whole box is looked at
-  std::size_t looked = 0;
   const auto cell = [](double at) { return static_cast<std::int32_t>(std::floor(at)); };
   for (std::int32_t u = cell(low[i]); u <= cell(high[i]); ++u) {
     for (std::int32_t v = cell(low[j]); v <= cell(high[j]); ++v) {
@@ -56,9 +55,9 @@ bool TriangleCells::append(Corners corners, std::size_t most, std::vector<VoxelI
         from = std::max(from, at - half);
         to = std::min(to, at + half);
       }
-      if (++looked > most) return false;
+      if (budget-- == 0) return ++budget, false;
       for (std::int32_t w = cell(from); w <= cell(to); ++w) {
-        if (++looked > most) return false;
+        if (budget-- == 0) return ++budget, false;
         std::array<std::int32_t, 3> index;
         index[static_cast<std::size_t>(i)] = u;
         index[static_cast<std::size_t>(j)] = v;

@@ -11,14 +11,15 @@ namespace concord::hmd {
 
 /// Calls `visit(VoxelIndex)` for each cell that a triangle meets; corners in units of a cell's edge. A cell holds its
 /// lower faces and not its upper ones, so a floor that lies on the face between two layers is in the upper one.
-/// Looks at few cells that are not met, whatever the triangle's slope. @return false, having visited at most `most`, if
-/// there are more to look at. (Separating axes: Akenine-Moeller, "Fast 3D Triangle-Box Overlap Testing", 2001.)
+/// Looks at few cells that are not met, whatever the triangle's slope. @return false if there are more cells to look at
+/// than `budget`, which is less by those that were. (Separating axes: Akenine-Moeller, "Fast 3D Triangle-Box Overlap
+/// Testing", 2001.)
 class TriangleCells {
  public:
   using Corners = std::array<Eigen::Vector3d, 3>;
 
   /// Appends the cells. @pre corners are finite and within 2^30.
-  [[nodiscard]] static bool append(Corners corners, std::size_t most, std::vector<VoxelIndex>& out);
+  [[nodiscard]] static bool append(Corners corners, std::size_t& budget, std::vector<VoxelIndex>& out);
 };
 
 /// Whether a triangle meets the closed cell.

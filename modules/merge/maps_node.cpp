@@ -1,5 +1,6 @@
 #include "merge/maps_node.hpp"
 
+#include <filesystem>
 #include <optional>
 #include <utility>
 
@@ -84,7 +85,9 @@ Result<Bytes> MapsNode::encoded(const MapRequest& request, const Bytes& labels) 
 Result<std::optional<Bytes>> MapsNode::labels_for(const MapRequest& request) const {
   if (request.format != kNative) return std::nullopt;
   const std::int64_t silent = context_.bus.now() - semantic_heard_.value_or(start_);
-  if (silent > kSilence && (!semantic_heard_ || silent > kGone)) return std::nullopt;
+  std::error_code error;
+  const bool has_run = semantic_heard_ || std::filesystem::exists(context_.site.state / "semantic.db", error);
+  if (silent > (has_run ? kGone : kSilence)) return std::nullopt;
   if (silent > kSilence) {
     return refuse(Code::kBusy, "semantic, which keeps the labels, has said nothing for " +
                                    std::to_string(silent / 1'000'000) +

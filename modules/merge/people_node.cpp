@@ -42,7 +42,6 @@ std::string message_of(const Operation& made) {
 }
 
 /// Voxels that an edit pins; one of anything else.
-std::int64_t count_of(const Operation& made) { return std::max<std::int64_t>(made.count, 1); }
 
 }  // namespace
 
@@ -91,6 +90,13 @@ void PeopleNode::hear(const std::string& channel, Check check) {
                     const Operation& made = people_.find(request.id)->operation;
                     replies_.grant(made.id, made.revision, count_of(made), message_of(made));
                   });
+}
+
+/// Voxels that an edit pins, be it that it was undone or done again; of anything else one.
+std::int64_t PeopleNode::count_of(const Operation& made) const {
+  const bool is_turned = made.kind == Operation::Kind::kUndo || made.kind == Operation::Kind::kRedo;
+  const People::Made* subject = is_turned ? people_.find(made.subject) : nullptr;
+  return std::max<std::int64_t>(subject != nullptr ? subject->operation.count : made.count, 1);
 }
 
 bool PeopleNode::repeat(const std::string& channel, const std::string& id, std::uint64_t content) {

@@ -44,6 +44,7 @@ class PeopleNode {
   void say_zones();
   void say_leases();
   void say_edits();
+  [[nodiscard]] std::int64_t count_of(const Operation& made) const;
   void expire_leases();
 
   NodeContext context_;

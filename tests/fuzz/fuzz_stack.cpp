@@ -56,6 +56,7 @@ const char* channel_of(const std::string& type) {
                                                                {"path_watch_t", "in/path_watch"},
                                                                {"path_t", "out/path/robot1"},
                                                                {"answer_t", "out/answer"},
+                                                               {"map_edits_t", "out/map_edits"},
                                                                {"agents_t", "out/agents"},
                                                                {"align_request_t", "in/align"},
                                                                {"align_decision_t", "in/align_decision"},

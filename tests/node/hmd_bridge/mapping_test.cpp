@@ -150,6 +150,21 @@ TEST_F(Bridge, AnEmptyLookAfterARestartLeavesTheSubmapAlone) {
   EXPECT_EQ(agents[0]["occupied"], 8) << "nothing was scanned anew that could take its place";
 }
 
+TEST_F(Bridge, APartOfARoomAfterARestartDoesNotTakeThePlaceOfTheWhole) {
+  become_agent(ana, "quest", false);
+  EXPECT_CODE(ana.upload(FrameKind::kVoxels, 1, 0, voxels_payload(voxel_look(0.1, true))), "OK");
+  lab.run(3);
+  lab.restart_bridge();
+  Client back(lab);
+  EXPECT_CODE(back.hello("quest"), "OK");
+  EXPECT_CODE(back.upload(FrameKind::kMesh, 1, 2, mesh_payload(floor_look())), "BAD_FRAME");
+  lab.run(4);
+  const Json agents = back.ask(AgentsRequest{})["answer"]["agents"];
+  ASSERT_EQ(agents.size(), 1u);
+  EXPECT_EQ(agents[0]["occupied"], 8);
+  EXPECT_CODE(back.upload(FrameKind::kVoxels, 1, 0, voxels_payload(voxel_look(0.1, true))), "OK") << "the whole, anew";
+}
+
 TEST_F(Bridge, AfterAResetTheFrameIsOver) {
   become_agent(ana, "quest", false);
   EXPECT_CODE(ana.upload(FrameKind::kMesh, 1, 0, mesh_payload(floor_look())), "OK");

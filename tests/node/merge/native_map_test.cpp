@@ -288,5 +288,16 @@ TEST_F(NativeMapTest, IsNotSavedWithoutLabelsWhileSemanticIsMerelyBusy) {
   EXPECT_NE(saved.message.find("without labels"), std::string::npos) << saved.message;
 }
 
+TEST_F(NativeMapTest, IsNotSavedWithoutLabelsThatAreKeptThoughSemanticWasNotHeardSinceTheStart) {
+  start();
+  send_wall();
+  ASSERT_TRUE(place("t1", somewhere()).ok);
+  ASSERT_TRUE(write_whole_file(site_.state / "semantic.db", Bytes{1}));
+  bus_->advance_to(bus_->now() + 10'000'000);
+  EXPECT_EQ(ask_map("s1", MapRequest::Op::kSave).code, "BUSY");
+  bus_->advance_to(bus_->now() + 90'000'000);
+  EXPECT_TRUE(ask_map("s2", MapRequest::Op::kSave).ok);
+}
+
 }  // namespace
 }  // namespace concord

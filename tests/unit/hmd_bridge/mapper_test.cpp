@@ -26,7 +26,8 @@ RC_GTEST_PROP(TriangleCells, AreThoseThatMeetTheTriangleAndNoOthers, ()) {
   };
   const TriangleCells::Corners corners{corner(), corner(), corner()};
   std::vector<VoxelIndex> cells;
-  RC_ASSERT(TriangleCells::append(corners, 100'000, cells));
+  std::size_t budget = 100'000;
+  RC_ASSERT(TriangleCells::append(corners, budget, cells));
   std::set<VoxelIndex> found(cells.begin(), cells.end());
   TriangleCells::Corners nudged = corners;
   for (auto& c : nudged) c.array() += 1e-6;
@@ -50,6 +51,22 @@ TEST(RoomMapper, AVoxelExistsAfterTwoLooksAndGoesWhenItsMeshIsGone) {
   std::int64_t looks = 0;
   while (mapper.occupied() > 0) ASSERT_TRUE(mapper.take(look_at({}), 4 + looks++));
   EXPECT_EQ(looks, 5) << "64 to 59 %";
+}
+
+TEST(RoomMapper, WhatALookCostsIsBoundedHoweverOftenATriangleIsRepeated) {
+  MeshPart same = quad(1, 1.0F, 0.01F);
+  for (int i = 0; i < 400; ++i) same.triangles.push_back({0, 1, 2});
+  std::vector<MeshPart> parts;
+  for (std::uint32_t number = 0; number < 1000; ++number) parts.push_back(same), parts.back().number = number;
+  RoomMapper mapper(0.05);
+  const auto taken = mapper.take(look_at(std::move(parts)), 0);
+  ASSERT_FALSE(taken);
+  EXPECT_EQ(taken.error().code, concord::Code::kTooLarge);
+  std::size_t budget = 1000;
+  std::vector<VoxelIndex> cells;
+  EXPECT_FALSE(TriangleCells::append({Eigen::Vector3d(0, 0, 0.5), {90, 0, 0.5}, {0, 90, 0.5}}, budget, cells));
+  EXPECT_LE(cells.size(), 1000U);
+  EXPECT_EQ(budget, 0U) << "the next triangle has none left";
 }
 
 TEST(RoomMapper, ProbabilityEndsAtAHundredPercent) {

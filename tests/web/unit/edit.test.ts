@@ -163,3 +163,23 @@ test("of a path its reason and the planner's message are said, also of one that 
   assert.equal(pathWords({ ...path, seconds: 75.4, zones: ["dock", "gate"] }), "6.3 m, 1 min 15 s, at least 0.25 m of room, keeps away from dock, gate");
   assert.equal(pathWords({ ...path, status: "NO_VALID_PATH", failed_leg: 1, nearest: [1, 2, 0] }), "No path (NO_VALID_PATH); leg 2 cannot be gone; the nearest place it can reach is marked");
 });
+
+test("what waits in a scene is taken back before anything that was sent", async (t) => {
+  t.mock.method(globalThis, "setInterval", () => 0);
+  const asked: string[] = [];
+  const ask = ((name: string) => {
+    asked.push(name);
+    return Promise.resolve({ revision: 1, voxels: { boxes: [] }, zones: [] });
+  }) as unknown as Ask;
+  const news = new News();
+  const draft = new SceneDraft(ask, news);
+  const editor = new Editor(ask, news, draft);
+  editor.did("sent");
+  await draft.get([0, 0, 0], 1);
+  draft.addEdit({ op: "add", shape: { kind: "box", min: [0, 0, 0], max: [1, 1, 1] } });
+  await editor.undo();
+  assert.deepEqual(draft.open.value!.edits, []);
+  assert.deepEqual(asked, ["scene_get"]);
+  await editor.undo();
+  assert.deepEqual(asked, ["scene_get", "undo"]);
+});

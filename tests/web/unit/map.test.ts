@@ -7,6 +7,9 @@ import { bitOf, chunkOf, keyOf } from "../../../hmd_bridge/web/src/map/lattice";
 import { budgetOf, nextRadii } from "../../../hmd_bridge/web/src/map/level_of_detail";
 import { Mesher, type MeshWorker } from "../../../hmd_bridge/web/src/map/mesher";
 import { raycast } from "../../../hmd_bridge/web/src/map/raycast";
+import { RefusedError } from "../../../hmd_bridge/web/src/link/failures";
+import { Views, type LookFunction } from "../../../hmd_bridge/web/src/map/views";
+import type { Code } from "../../../hmd_bridge/web/generated/messages";
 import type { BlockFrame, Triple } from "../../../hmd_bridge/web/src/protocol/frames";
 import { random } from "../support/random";
 
@@ -190,4 +193,39 @@ test("of a block that changes while it waits only the newest is meshed", () => {
   finish();
   assert.deepEqual(done, ["a1", "b3", "c gone"]);
   assert(mesher.settled);
+});
+
+test("a layer that the server does not have yet is asked for again until it has, or nobody looks", async () => {
+  const turn = (): Promise<void> => new Promise((resolve) => setImmediate(resolve));
+  const later: (() => void)[] = [];
+  let code: Code | null = "UNAVAILABLE";
+  let asked = 0;
+  const look = (() => {
+    ++asked;
+    return code === null ? Promise.resolve({ stream: 3, blocks: 0, lacking: 0 }) : Promise.reject(new RefusedError({ code, message: "", retry: true } as never));
+  }) as unknown as LookFunction;
+  const views = new Views(look, () => Promise.resolve(), (task) => later.push(task));
+  const view = views.open("labels");
+  view.show({ frame: "map", centre: [0, 0, 0], radii: [5] });
+  await turn();
+  assert.equal(view.stream, null);
+  later.shift()!();
+  await turn();
+  code = null;
+  later.shift()!();
+  await turn();
+  assert.equal(view.stream, 3);
+  assert.equal(asked, 3);
+  assert.equal(later.length, 0);
+  code = "NO_AGENT";
+  views.renew(false);
+  await turn();
+  view.hide();
+  later.shift()!();
+  await turn();
+  assert.equal(asked, 4, "nobody looks any more");
+  code = "BAD_REQUEST";
+  view.show({ frame: "map", centre: [0, 0, 0], radii: [5] });
+  await turn();
+  assert.equal(later.length, 0, "it will not come");
 });

@@ -115,9 +115,11 @@ export class Editor {
   }
 
   async undo(): Promise<void> {
+    // What is not sent yet was done last, as far as the person is concerned.
+    if (this.draft.takeBack()) return this.news.done("The last change of your scene is taken back; the others wait for Send Scene.");
     const edit = this.undoable.value.at(-1);
     if (edit === undefined) return this.news.failed("You have nothing to undo. Others' changes are in History.");
-    if (!(await this.news.tell(this.ask("undo", { edit }), ({ voxels }) => `Undone: ${counted(voxels, "voxel")}.`))) return;
+    if (!(await this.news.tell(this.ask("undo", { edit }), () => "Undone."))) return;
     this.undoable.set(this.undoable.value.filter((other) => other !== edit));
     this.redoable.set([...this.redoable.value, edit]);
   }
@@ -125,7 +127,7 @@ export class Editor {
   async redo(): Promise<void> {
     const edit = this.redoable.value.at(-1);
     if (edit === undefined) return this.news.failed("There is nothing to redo.");
-    if (!(await this.news.tell(this.ask("redo", { edit }), ({ voxels }) => `Done again: ${counted(voxels, "voxel")}.`))) return;
+    if (!(await this.news.tell(this.ask("redo", { edit }), () => "Done again."))) return;
     this.redoable.set(this.redoable.value.filter((other) => other !== edit));
     this.undoable.set([...this.undoable.value, edit]);
   }

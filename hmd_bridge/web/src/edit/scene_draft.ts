@@ -27,7 +27,7 @@ export class SceneDraft {
 
   async get(centre: Vec3, radius: number): Promise<void> {
     const asked = this.ask("scene_get", { frame: "map", centre, radius });
-    const scene = await this.news.tell(asked, ({ voxels, zones }) => `Scene taken: ${counted(voxels.boxes.length, "box")} of voxels, ${counted(zones.length, "zone")}. Your edits wait until Send Scene.`);
+    const scene = await this.news.tell(asked, ({ voxels, zones }) => `Scene taken: ${counted(voxels.boxes.length, "block")} of voxels, ${counted(zones.length, "zone")}. Your edits wait until Send Scene.`);
     if (scene) this.open.set({ revision: scene.revision, voxelBoxes: scene.voxels.boxes.length, edits: [], zones: [] });
   }
 
@@ -47,6 +47,14 @@ export class SceneDraft {
     const body: Requests["scene_send"] = { base_revision: draft.revision, frame: "map", edits: draft.edits, zones: draft.zones };
     const asked = this.ask("scene_send", body);
     if (await this.news.tell(asked, ({ edits, zones }) => `Scene sent: ${counted(edits.length, "change")}, ${counted(zones, "zone")}.`)) this.open.set(null);
+  }
+
+  /** Takes back the change that was prepared last. @return whether there was one */
+  takeBack(): boolean {
+    const draft = this.open.value;
+    if (!draft || draft.edits.length === 0) return false;
+    this.open.set({ ...draft, edits: draft.edits.slice(0, -1) });
+    return true;
   }
 
   discard(): void {

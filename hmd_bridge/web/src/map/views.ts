@@ -3,6 +3,7 @@ import type { Answers, Layer, Requests } from "../../generated/messages";
 import type { EventMessage } from "../protocol/envelope";
 import type { BlockFrame, ForgetFrame, LabelsFrame } from "../protocol/frames";
 import { Signal } from "../base/signal";
+import { RefusedError } from "../link/failures";
 import { BlockStore } from "./block_store";
 import { LabelBlocks } from "./label_blocks";
 
@@ -11,6 +12,10 @@ export type LookFunction = (body: Requests["view"]) => Promise<Answers["view"]>;
 export type CloseFunction = (body: Requests["view_close"]) => Promise<unknown>;
 
 const kMapStream = 0;
+/** After a start the server does not know yet what it will: who labels, which agents there are. */
+const kMayCome = new Set(["UNAVAILABLE", "NO_AGENT", "NO_MAP", "BUSY", "TIMEOUT", "RATE"]);
+const kAgainMs = 2000;
+export type Later = (task: () => void, ms: number) => unknown;
 
 export class LayerView {
   readonly store = new BlockStore();
@@ -28,6 +33,7 @@ export class LayerView {
     readonly agent: string | undefined,
     private readonly look: LookFunction,
     private readonly close: CloseFunction,
+    private readonly later: Later,
   ) {}
 
   /** Looks there from now on. While an answer is awaited the newest region waits. */
@@ -80,11 +86,19 @@ export class LayerView {
         this.failure.set(null);
         if (!this.region) this.hide();
       })
-      .catch((error: unknown) => this.failure.set(error instanceof Error ? error.message : String(error)))
+      .catch((error: unknown) => this.failed(error))
       .finally(() => {
         this.asking = false;
         if (this.again && this.region) this.ask();
       });
+  }
+
+  private failed(error: unknown): void {
+    this.failure.set(error instanceof Error ? error.message : String(error));
+    if (!(error instanceof RefusedError) || !kMayCome.has(error.refusal.code)) return;
+    this.later(() => {
+      if (this.region && this.stream === null && !this.asking) this.ask();
+    }, kAgainMs);
   }
 }
 
@@ -94,10 +108,11 @@ export class Views {
   constructor(
     private readonly look: LookFunction,
     private readonly close: CloseFunction,
+    private readonly later: Later = (task, ms) => setTimeout(task, ms),
   ) {}
 
   open(layer: Layer, agent?: string): LayerView {
-    const view = new LayerView(layer, agent, this.look, this.close);
+    const view = new LayerView(layer, agent, this.look, this.close, this.later);
     this.views.add(view);
     return view;
   }

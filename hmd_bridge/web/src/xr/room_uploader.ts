@@ -67,8 +67,9 @@ export class RoomUploader {
       try {
         return await this.link.upload((id) => meshFrame(id, sequence, meshes, packed));
       } catch (error) {
-        const wait = error instanceof RefusedError && error.refusal.code === "RATE" && offers < kMostOffers;
-        if (!wait) throw error;
+        const code = error instanceof RefusedError ? error.refusal.code : null;
+        if (code !== null && code !== "DUP_SEQ" && restarts === this.restarts) this.sequence = sequence; // it was not taken
+        if (code !== "RATE" || offers >= kMostOffers) throw error;
       }
       await this.pause(kLookMs);
     }
