@@ -19,6 +19,11 @@ const std::string* text_at(const Json& json, const char* name) {
   return it != json.end() && it->is_string() ? it->get_ptr<const std::string*>() : nullptr;
 }
 
+std::string in_words(const std::string& message, Problem problem) {
+  (void)problem.within(message);
+  return problem.text;
+}
+
 }  // namespace
 
 bool nests_at_most(std::string_view text, int most) {
@@ -55,7 +60,7 @@ tl::expected<ClientText, BadText> read_client_text(std::string_view text) {
     ClientRequest request{*id, {}};
     const std::optional<bool> read = read_request(*name, *body, request.body, problem);
     if (!read) return bad("no request is called " + name->substr(0, 40), id);
-    if (!*read) return tl::unexpected<BadText>(BadText{id, *name + problem.text, problem.is_name});
+    if (!*read) return tl::unexpected<BadText>(BadText{id, in_words(*name, problem), problem.is_name});
     return ClientText(std::move(request));
   }
   const std::string* name = text_at(json, "notice");
@@ -63,7 +68,7 @@ tl::expected<ClientText, BadText> read_client_text(std::string_view text) {
   NoticeBody notice;
   const std::optional<bool> read = read_notice(*name, *body, notice, problem);
   if (!read) return bad("no notice is called " + name->substr(0, 40));
-  if (!*read) return bad(*name + problem.text);
+  if (!*read) return bad(in_words(*name, problem));
   return ClientText(std::move(notice));
 }
 

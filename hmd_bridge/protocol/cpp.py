@@ -106,7 +106,7 @@ def cpp_source(schema):
                      '  if (it == json.end() || !it->is_string()) return problem.say(" lacks kind");\n'
                      "  const auto kind = it->get<std::string>();\n"
                      '  Json rest = json;\n  rest.erase("kind");\n' + cases +
-                     f'  return problem.say(".kind is no {union}");\n}}\n'
+                     f'  return problem.say("kind is no {union}");\n}}\n'
                      f"Json write_value(const {union}& value) {{\n"
                      f"  static constexpr const char* kKinds[] = {{{kinds}}};\n"
                      "  Json json = std::visit([](const auto& part) { return write_value(part); }, value);\n"

@@ -89,6 +89,22 @@ TEST_F(Working, ZonesAreAddedChangedAndDeleted) {
   EXPECT_CODE(ana.ask(ZoneDeleteRequest{"dock", {}}), "NOT_FOUND");
 }
 
+TEST_F(Working, ASceneHasTheRevisionOfPeoplesCorrectionsWhateverWasSavedAndAfterARestart) {
+  EXPECT_CODE(ana.ask(EditRequest{EditOp::kAdd, Frame::kMap, box(1, 1, 0.2, 1.5, 1.5, 0.5), {}, {}}), "OK");
+  const SceneGetRequest get{Frame::kMap, {3.2, 3.2, 0}, 20};
+  const std::int64_t revision = ana.ask(get)["answer"]["revision"];
+  EXPECT_GT(revision, 0);
+  lab.run(3);
+  EXPECT_CODE(ana.ask(SaveRequest{"hall", {Format::kBt}, false}), "OK");
+  EXPECT_EQ(ana.ask(get)["answer"]["revision"], revision);
+  lab.restart_bridge();
+  lab.run(3);
+  Client back(lab);
+  EXPECT_CODE(back.hello(), "OK");
+  lab.run(1);
+  EXPECT_EQ(back.ask(get)["answer"]["revision"], revision);
+}
+
 TEST_F(Working, ASceneGoesOutAndComesBack) {
   const Json got = ana.ask(SceneGetRequest{Frame::kMap, {3.2, 3.2, 0}, 20});
   EXPECT_CODE(got, "OK");
