@@ -1,5 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import type { EventMessage } from "../../../hmd_bridge/web/src/protocol/envelope";
 import type { HelloAnswer, Pose } from "../../../hmd_bridge/web/generated/messages";
 import { Link, type Socket } from "../../../hmd_bridge/web/src/link/link";
 import { RefusedError, wordsFor } from "../../../hmd_bridge/web/src/link/failures";
@@ -305,4 +306,18 @@ test("after a connection began only what is said to be open then waits for a dec
   world.renew();
   propose("d3");
   assert.deepEqual(open(), ["d3"]);
+});
+
+test("a process that was heard and falls silent is named until it speaks again, or another connection begins", () => {
+  const world = new World();
+  const hear = (alive: string[]): void => world.hear({ event: "processes", body: { alive } } as EventMessage);
+  hear(["merge", "planner"]);
+  assert.deepEqual(world.silent.value, []);
+  hear(["planner"]);
+  assert.deepEqual(world.silent.value, ["merge"]);
+  hear(["merge", "planner", "semantic"]);
+  assert.deepEqual(world.silent.value, []);
+  hear([]);
+  world.renew();
+  assert.deepEqual(world.silent.value, []);
 });

@@ -13,7 +13,8 @@ export class World {
   readonly people = new Signal<Person[]>([]);
   readonly zones = new Signal<Zone[]>([]);
   readonly leases = new Signal<Lease[]>([]);
-  readonly processes = new Signal<string[]>([]);
+  /** Processes of the stack that were heard since this connection began, and are silent now. */
+  readonly silent = new Signal<string[]>([]);
   /** Of robots whose path is followed. */
   readonly paths = new Signal<ReadonlyMap<string, Path>>(new Map());
   /** Those that nobody has decided on. */
@@ -26,6 +27,13 @@ export class World {
   /** The agent that this device is; none on a desk. */
   own: string | null = null;
 
+  private heard: string[] = [];
+
+  private hearProcesses(alive: string[]): void {
+    this.heard = [...new Set([...this.heard, ...alive])];
+    this.silent.set(this.heard.filter((process) => !alive.includes(process)));
+  }
+
   agent(name: string): Agent | undefined {
     return this.agents.value.find(({ agent }) => agent === name);
   }
@@ -37,6 +45,8 @@ export class World {
 
   /** A connection began: what was decided meanwhile is not said any more, what is open comes again. */
   renew(): void {
+    this.heard = [];
+    this.silent.set([]);
     this.detections.set([]);
     this.slips.set([]);
   }
@@ -64,7 +74,7 @@ export class World {
       case "leases":
         return this.leases.set(message.body.leases);
       case "processes":
-        return this.processes.set(message.body.alive);
+        return this.hearProcesses(message.body.alive);
       case "path":
         return this.setPath(message.body.path);
       case "behind":

@@ -7,12 +7,12 @@ import type { World } from "../link/world";
 
 const kNewsMs = 8000;
 
-function connectionWords(state: LinkState): { text: string; kind: string } {
+function connectionWords(state: LinkState, silent: string[]): { text: string; kind: string } {
   switch (state.state) {
     case "connecting":
       return { text: "Connecting…", kind: "wait" };
     case "ready":
-      return { text: "Connected", kind: "good" };
+      return silent.length > 0 ? { text: `Connected; silent: ${silent.join(", ")}`, kind: "wait" } : { text: "Connected", kind: "good" };
     case "lost":
       return { text: `${state.why} Trying again in ${state.seconds} s.`, kind: "bad" };
     case "refused":
@@ -22,12 +22,15 @@ function connectionWords(state: LinkState): { text: string; kind: string } {
 
 export function statusBar(link: Link, world: World): HTMLElement {
   const connection = el("span", { id: "connection", role: "status" });
-  link.state.watch((state) => {
-    const { text, kind } = connectionWords(state);
+  const say = (): void => {
+    const state = link.state.value;
+    const { text, kind } = connectionWords(state, world.silent.value);
     connection.textContent = text;
     connection.className = `badge ${kind}`;
     document.body.dataset["connection"] = state.state;
-  });
+  };
+  link.state.watch(say);
+  world.silent.onChange(say);
   const who = live(
     (redraw) => {
       link.state.watch(redraw);
