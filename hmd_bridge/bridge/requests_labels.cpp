@@ -93,6 +93,7 @@ void work_on(Desk& desk, const Ask& ask, const LabelsRequest& /*request*/) {
       there.voxels += one.voxels;
     }
     LabelsAnswer answer;
+    answer.in_all = static_cast<std::int64_t>(classes.size());
     for (auto& [number, one] : classes) {
       if (answer.labels.size() < 1000) answer.labels.push_back(std::move(one));
     }

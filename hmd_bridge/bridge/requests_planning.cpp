@@ -12,9 +12,10 @@ constexpr std::int64_t kReplanPatience = 5'000'000;  // microseconds
 constexpr std::int64_t kLook = 50'000;
 constexpr std::int64_t kMaxInsideCells = 1'000'000;
 
-Code plan_code(const std::string& status) {
+/// @param is_aligned whether the robot has a place in the map: then it is its pose that nobody has heard of late
+Code plan_code(const std::string& status, bool is_aligned) {
   if (status == "NO_MAP") return Code::kNoMap;
-  if (status == "NO_POSE") return Code::kUnaligned;
+  if (status == "NO_POSE") return is_aligned ? Code::kStale : Code::kUnaligned;
   if (status == "BAD_REQUEST" || status == "BUSY" || status == "TIMEOUT" || status == "TOO_LARGE")
     return code_of(status);
   return Code::kUnreachable;
@@ -23,18 +24,20 @@ Code plan_code(const std::string& status) {
 /// Asks the planner and answers with the path in the frame that was asked for.
 template <class PathAnswerOf>
 void plan(Desk& desk, const Ask& ask, concord::PathRequest request, Frame frame, PathAnswerOf answer_of) {
-  if (desk.world.agent(request.robot) == nullptr)
-    return desk.hub.refuse(ask, Code::kNoRobot, "no robot is called " + request.robot);
+  const auto* robot = desk.world.agent(request.robot);
+  if (robot == nullptr) return desk.hub.refuse(ask, Code::kNoRobot, "no robot is called " + request.robot);
+  const bool is_aligned = robot->aligned;
   request.id = desk.id(ask);
   const std::string id = request.id;
   desk.paths.erase(id);
   desk.watched.insert(id);
   desk.asker.ask(
       {"in/path_request", encode(request, desk.now()), id, [&desk, id] { return desk.paths.contains(id); }, {}},
-      [&desk, ask, id, frame, answer_of](const Answer& answer) {
+      [&desk, ask, id, frame, is_aligned, answer_of](const Answer& answer) {
         desk.watched.erase(id);
         const auto node = desk.paths.extract(id);
-        if (!answer.ok) return desk.hub.refuse(ask, plan_code(answer.code), answer.code + ": " + answer.message);
+        if (!answer.ok)
+          return desk.hub.refuse(ask, plan_code(answer.code, is_aligned), answer.code + ": " + answer.message);
         if (desk.hub.find(ask.session) == nullptr) return;
         const auto shown = desk.show(ask, node.mapped(), frame);
         if (!shown) return desk.refuse(ask, shown.error());

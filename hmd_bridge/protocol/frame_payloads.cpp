@@ -207,8 +207,8 @@ Result<VoxelLook> read_voxels(const BinaryFrame& frame) {
   look.resolution = std::bit_cast<double>(*read_le<std::uint64_t>(in));
   look.p_occupied = *read_float(in);
   look.p_free = *read_float(in);
-  if (!std::isfinite(look.resolution) || !(look.p_occupied > 0.5 && look.p_occupied < 1) ||
-      !(look.p_free > 0 && look.p_free < 0.5)) {
+  if (!std::isfinite(look.resolution)) return refuse(Code::kNotFinite, "the resolution is not finite");
+  if (!(look.p_occupied > 0.5 && look.p_occupied < 1) || !(look.p_free > 0 && look.p_free < 0.5)) {
     return refuse(Code::kNotFinite,
                   "the probability of occupied lies above a half, that of free below, both within 0 and 1");
   }

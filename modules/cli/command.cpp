@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <string_view>
 
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 namespace concord {

@@ -3,7 +3,7 @@
 #include <functional>
 #include <string>
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 #include <nlohmann/json_fwd.hpp>
 
 #include "bus/site.hpp"

@@ -7,6 +7,7 @@ import { fromYaw, kIdentity, type Vec3 } from "./base/vec";
 import { AlignSession } from "./edit/align_session";
 import { ConflictTour } from "./edit/conflict_tour";
 import { Editor } from "./edit/editor";
+import { Obstacles } from "./edit/obstacles";
 import { pathWords } from "./edit/robot_acts";
 import { SceneDraft } from "./edit/scene_draft";
 import type { Ask, Link } from "./link/link";
@@ -33,6 +34,7 @@ export interface Eyes {
 export class App {
   readonly ask: Ask;
   readonly draft: SceneDraft;
+  readonly obstacles: Obstacles;
   readonly editor: Editor;
   readonly align: AlignSession;
   readonly conflicts: ConflictTour;
@@ -40,8 +42,6 @@ export class App {
   readonly editOverlay: EditOverlay;
   readonly grid: GridSheet;
   readonly things = new Signal<Instance[]>([]);
-  /** Virtual obstacles that this page added, by their ids. */
-  readonly obstacles = new Signal<readonly string[]>([]);
   private readonly views: Views;
   private readonly own: Signal<HelloAnswer>;
 
@@ -56,8 +56,9 @@ export class App {
   ) {
     this.own = new Signal(hello);
     this.ask = (name, body) => link.request(name, body);
-    this.draft = new SceneDraft(this.ask, news);
+    this.draft = new SceneDraft(this.ask, news, localStorage);
     this.editor = new Editor(this.ask, news, this.draft);
+    this.obstacles = new Obstacles(this.ask, this.editor, news, localStorage);
     this.editor.setThickness(hello.resolution);
     this.align = new AlignSession(this.ask, (agent, resolution) => this.minimap(agent, resolution), news);
     this.conflicts = new ConflictTour(this.ask, news);
@@ -78,6 +79,7 @@ export class App {
       this.watchLabels();
       if (!this.layers.isShown("conflicts")) this.conflicts.look(null);
     });
+    void this.obstacles.check();
   }
 
   get hello(): HelloAnswer {
@@ -98,6 +100,7 @@ export class App {
     this.world.renew();
     this.views.renew(keep);
     for (const robot of this.world.paths.value.keys()) void this.followPath(robot, true);
+    void this.obstacles.check();
   }
 
   async followPath(robot: string, follow: boolean): Promise<void> {
@@ -107,21 +110,11 @@ export class App {
     if (answer && follow) this.world.setPath(answer.path);
   }
 
-  async addObstacle(): Promise<void> {
-    const answer = await this.editor.obstacle();
-    if (answer) this.obstacles.set([...this.obstacles.value, answer.obstacle]);
-  }
-
-  async removeObstacle(obstacle: string): Promise<void> {
-    if (await this.news.tell(this.ask("obstacle_remove", { obstacle }), () => "The obstacle is gone.")) {
-      this.obstacles.set(this.obstacles.value.filter((other) => other !== obstacle));
-    }
-  }
-
   async loadThings(): Promise<void> {
     const answer = await this.news.tell(this.ask("instances", { most: kMostInstances }), () => null);
     if (!answer) return;
-    this.things.set(answer.instances);
+    // A list that is drawn anew takes the buttons away under the hand that is about to press one.
+    if (JSON.stringify(answer.instances) !== JSON.stringify(this.things.value)) this.things.set(answer.instances);
     this.layers.shown.get("labels")?.view.labels.setAssets(answer.instances.filter(({ asset }) => asset !== undefined));
     this.stage.invalidate();
   }

@@ -39,7 +39,9 @@ TEST_F(Labelling, TheServerSaysWhichOneItIsAndAllAreListed) {
   EXPECT_EQ(first["label"], 1);
   EXPECT_EQ(first["instance"], 1);
   EXPECT_EQ(labelled("chair", box(4, 4, 0, 4.5, 4.5, 0.6))["instance"], 2);
-  const Json labels = ana.ask(LabelsRequest{})["answer"]["labels"];
+  const Json answer = ana.ask(LabelsRequest{})["answer"];
+  EXPECT_EQ(answer["in_all"], 1);
+  const Json& labels = answer["labels"];
   ASSERT_EQ(labels.size(), 1U);
   EXPECT_EQ(labels[0]["name"], "chair");
   EXPECT_EQ(labels[0]["instances"], 2);

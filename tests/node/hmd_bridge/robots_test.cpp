@@ -102,6 +102,20 @@ TEST_F(Working, GoalsThatCannotBeReachedAreRefused) {
   EXPECT_CODE(ana.ask(PlanRequest{"robot1", Frame::kMap, {}, {50, 1, 0}}), "UNREACHABLE");
 }
 
+TEST_F(Working, AWayFromNowhereIsRefusedByWhatIsMissing) {
+  BrickMap seen;
+  VoxelMask all;
+  all.fill(~std::uint64_t{0});
+  seen.set({0, 0, 0}, Brick::uniform(all, kOccupied));
+  lab.agent_maps("robot2", seen);
+  lab.run(0.5);
+  const PlanRequest plan{"robot2", Frame::kMap, {}, {5, 1, 0}};
+  EXPECT_CODE(ana.ask(plan), "UNALIGNED");
+  EXPECT_CODE(ana.ask(PlaceRequest{"robot2", kHere}), "OK");
+  lab.run(1.5);
+  EXPECT_CODE(ana.ask(plan), "STALE") << "it never said where it is";
+}
+
 TEST_F(Working, AVirtualObstacleForcesAnotherPath) {
   EXPECT_CODE(ana.ask(GoalRequest{"robot1", Frame::kMap, Pose{{5, 1, 0}, {0, 0, 0, 1}}}), "OK");
   lab.run(1.5);

@@ -202,7 +202,10 @@ export class FakeServer {
     instances: () => ({ instances: this.things, in_all: this.things.length }),
     label: () => ({ label: 3, instance: 1, voxels: 640, undo: "label/1" }),
     label_touch: () => ({ label: 4, instance: 1, voxels: 120, min: [0, 0, 0], max: [0.5, 0.5, 0.9], undo: "label/2" }),
-    labels: () => ({ labels: this.things.length > 0 ? [{ label: 3, name: "desk", instances: this.things.length, voxels: 640 }] : [] }),
+    labels: () => {
+      const labels = this.things.length > 0 ? [{ label: 3, name: "desk", instances: this.things.length, voxels: 640 }] : [];
+      return { labels, in_all: labels.length };
+    },
     label_rename: () => ({ undo: "label/3" }),
     instance_reassign: ({ label }) => ({ label: label + 1, instance: 1, voxels: 640, undo: "label/4" }),
     instance_delete: ({ label, instance }) => {

@@ -1,17 +1,25 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { checkStruct, type ConflictRegion, type Path, type Requests } from "../../../hmd_bridge/web/generated/messages";
+import { checkStruct, type ConflictRegion, type Operation, type Path, type Requests } from "../../../hmd_bridge/web/generated/messages";
 import { composed, distance, fromXr, fromYaw, inverse, kIdentity, levelled, poseFromXr, rotated, toXr, transformed, unit, yawOf, type Vec3 } from "../../../hmd_bridge/web/src/base/vec";
+import type { Store } from "../../../hmd_bridge/web/src/base/kept";
 import { News } from "../../../hmd_bridge/web/src/base/news";
 import { conflictWords, ConflictTour, cornersOf } from "../../../hmd_bridge/web/src/edit/conflict_tour";
 import { Editor } from "../../../hmd_bridge/web/src/edit/editor";
+import { Obstacles } from "../../../hmd_bridge/web/src/edit/obstacles";
 import { outline } from "../../../hmd_bridge/web/src/edit/outline";
 import { pathWords } from "../../../hmd_bridge/web/src/edit/robot_acts";
 import { SceneDraft } from "../../../hmd_bridge/web/src/edit/scene_draft";
 import { begun, boundsOf, ended, flattened, shapeOf, volumeOf, withoutLast, withPoint, type Selection, type Tool } from "../../../hmd_bridge/web/src/edit/selection";
 import type { Ask } from "../../../hmd_bridge/web/src/link/link";
+import { operationWords } from "../../../hmd_bridge/web/src/panels/history_panel";
 import { clearanceColour, ribbon } from "../../../hmd_bridge/web/src/scene/ribbon";
 import { random } from "../support/random";
+
+function store(): Store {
+  const values = new Map<string, string>();
+  return { getItem: (key) => values.get(key) ?? null, setItem: (key, value) => void values.set(key, value) };
+}
 
 const select = (tool: Tool, points: Vec3[], height: number | null = 2): Selection => points.reduce(withPoint, begun(tool, 0.05, height));
 const near = (a: Vec3, b: Vec3): void => assert(distance(a, b) < 1e-9, `${a} is not ${b}`);
@@ -105,7 +113,7 @@ test("voxels are moved by two points that the person shows; one that is not show
     return Promise.resolve({ edit: "e1", revision: 1, voxels: 8 });
   }) as unknown as Ask;
   const news = new News();
-  const editor = new Editor(ask, news, new SceneDraft(ask, news));
+  const editor = new Editor(ask, news, new SceneDraft(ask, news, store()));
   const turn = (): Promise<void> => new Promise((resolve) => setImmediate(resolve));
   await editor.move();
   assert.match(news.latest.value!.text, /Select something first/);
@@ -172,7 +180,7 @@ test("what waits in a scene is taken back before anything that was sent", async 
     return Promise.resolve({ revision: 1, voxels: { boxes: [] }, zones: [] });
   }) as unknown as Ask;
   const news = new News();
-  const draft = new SceneDraft(ask, news);
+  const draft = new SceneDraft(ask, news, store());
   const editor = new Editor(ask, news, draft);
   editor.did("sent");
   await draft.get([0, 0, 0], 1);
@@ -182,4 +190,60 @@ test("what waits in a scene is taken back before anything that was sent", async 
   assert.deepEqual(asked, ["scene_get"]);
   await editor.undo();
   assert.deepEqual(asked, ["scene_get", "undo"]);
+});
+
+test("what waits in a scene is there after a reload; what another version of the page wrote is not taken", async () => {
+  const ask = ((name: string) => Promise.resolve(name === "scene_get" ? { revision: 7, voxels: { boxes: [] }, zones: [] } : { edits: ["e1"], zones: 0 })) as unknown as Ask;
+  const memory = store();
+  const draft = (): SceneDraft => new SceneDraft(ask, new News(), memory);
+  const first = draft();
+  await first.get([0, 0, 0], 1);
+  first.addEdit({ op: "add", shape: { kind: "box", min: [0, 0, 0], max: [1, 1, 1] } });
+  assert.deepEqual(draft().open.value, first.open.value);
+  assert.equal(draft().open.value!.edits.length, 1);
+  for (const strange of ["{", "[]", "3", '{"revision":7,"voxelBoxes":0,"edits":[{"op":"paint"}],"zones":[]}', '{"revision":7.5,"voxelBoxes":0,"edits":[],"zones":[]}']) {
+    memory.setItem("concord-scene", strange);
+    assert.equal(draft().open.value, null, strange);
+  }
+  memory.setItem("concord-scene", JSON.stringify(first.open.value));
+  const again = draft();
+  await again.send();
+  assert.equal(draft().open.value, null, "what was sent waits no more");
+});
+
+test("obstacles of this page are known after a reload, but for those that stand no more", async () => {
+  const standing = new Map([["o1", true], ["o2", false]]);
+  let reachable = true;
+  const ask = ((name: string, body: { subject?: string; obstacle?: string }) => {
+    if (!reachable) return Promise.reject(new Error("not connected"));
+    if (name === "obstacle_remove") return Promise.resolve({ revision: 3, paths: [] });
+    const active = standing.get(body.subject!);
+    return Promise.resolve({ operations: active === undefined ? [] : [{ operation: body.subject, active }, { operation: "u1", active: true }] });
+  }) as unknown as Ask;
+  const ids = ["o1", "o2", "o3"];
+  const editor = { obstacle: () => Promise.resolve({ obstacle: ids.shift()! }) } as unknown as Editor;
+  const memory = store();
+  const load = (): Obstacles => new Obstacles(ask, editor, new News(), memory);
+  const first = load();
+  for (let made = 0; made < 3; ++made) await first.add();
+  const second = load();
+  reachable = false;
+  await second.check();
+  assert.deepEqual(second.own.value, ["o1", "o2", "o3"], "what cannot be asked stays");
+  reachable = true;
+  await second.check();
+  assert.deepEqual(second.own.value, ["o1"], "o2 was undone, o3 is not known");
+  await second.remove("o1");
+  assert.deepEqual(load().own.value, []);
+});
+
+test("history says of an undo what it took back, as far as it is known", () => {
+  const by = (author: string, what: Operation["what"], subject: string, count = 0): Operation =>
+    ({ operation: `${author}-1`, author, what, subject, count, utime: 0, revision: 1, active: true });
+  const added = by("Ana", "add", "", 640);
+  assert.equal(operationWords(added, new Map()), "Ana added 640 voxels");
+  const undone = by("Ben", "undo", added.operation, 640);
+  assert.equal(operationWords(undone, new Map([[added.operation, added]])), "Ben undid: Ana added 640 voxels");
+  assert.equal(operationWords(undone, new Map()), "Ben undid Ana-1");
+  assert.equal(operationWords(by("", "zone_add", "stairs"), new Map()), "somebody added zone stairs");
 });

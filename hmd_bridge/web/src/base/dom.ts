@@ -23,11 +23,28 @@ export function section(title: string, ...children: (Node | string)[]): HTMLElem
 /** A line for what there is none of. */
 export const none = (text: string): HTMLElement => el("p", { class: "none" }, text);
 
-/** Shows what `make` makes of a value, again at each change. */
+/** Shows what `make` makes of a value, again at each change; what somebody is typing into it stays. */
 export function live(watch: (redraw: () => void) => void, make: () => (Node | string)[], attributes: Record<string, Attribute> = {}): HTMLElement {
   const box = el("div", attributes);
-  watch(() => box.replaceChildren(...make()));
+  watch(() => {
+    const putBack = typedInto(box);
+    box.replaceChildren(...make());
+    putBack();
+  });
   return box;
+}
+
+/** Takes down what was typed into fields, by their labels; the answer writes it into the fields that have these labels then. */
+function typedInto(box: HTMLElement): () => void {
+  const fields = (): HTMLInputElement[] => [...box.querySelectorAll<HTMLInputElement>("input[aria-label]:not([type=checkbox])")];
+  const typed = new Map(fields().filter((one) => one.value !== one.defaultValue).map((one) => [one.ariaLabel, one.value]));
+  const writing = box.contains(document.activeElement) ? document.activeElement!.ariaLabel : null;
+  return () => {
+    for (const one of fields()) {
+      one.value = typed.get(one.ariaLabel) ?? one.value;
+      if (writing !== null && one.ariaLabel === writing) one.focus();
+    }
+  };
 }
 
 export function field(title: string, control: HTMLElement): HTMLLabelElement {

@@ -2,9 +2,10 @@
  * Get Scene and Send Scene: a person takes what is around them, prepares changes in peace, and sends them all at once; the
  * server refuses them where somebody else changed something meanwhile.
  */
-import type { Requests, SceneEdit, SceneZone } from "../../generated/messages";
+import { checkStruct, type Requests, type SceneEdit, type SceneZone } from "../../generated/messages";
+import { kept, type Store } from "../base/kept";
 import { counted, type News } from "../base/news";
-import { Signal } from "../base/signal";
+import type { Signal } from "../base/signal";
 import type { Vec3 } from "../base/vec";
 import type { Ask } from "../link/link";
 
@@ -17,13 +18,23 @@ export interface Draft {
 
 const kMost = 64;
 
+function isDraft(value: unknown): value is Draft {
+  if (typeof value !== "object" || value === null) return false;
+  const { revision, voxelBoxes, edits, zones } = value as Partial<Record<keyof Draft, unknown>>;
+  const all = (list: unknown, struct: string): boolean => Array.isArray(list) && list.length <= kMost && list.every((each) => checkStruct(struct, each) === null);
+  return Number.isSafeInteger(revision) && Number.isSafeInteger(voxelBoxes) && all(edits, "SceneEdit") && all(zones, "SceneZone");
+}
+
 export class SceneDraft {
-  readonly open = new Signal<Draft | null>(null);
+  readonly open: Signal<Draft | null>;
 
   constructor(
     private readonly ask: Ask,
     private readonly news: News,
-  ) {}
+    store: Store,
+  ) {
+    this.open = kept<Draft | null>(store, "concord-scene", null, isDraft);
+  }
 
   async get(centre: Vec3, radius: number): Promise<void> {
     const asked = this.ask("scene_get", { frame: "map", centre, radius });

@@ -41,7 +41,7 @@ const kWords: Record<Code, string> = {
   NO_INSTANCE: "This thing is not here any more.",
   BAD_NAME: "This name cannot be used.",
   NO_LABEL: "There is no such label.",
-  BAD_SHAPE: "This shape crosses itself or has no extent. Draw it again.",
+  BAD_SHAPE: "This shape cannot be used. Draw it again.",
   STALE_STAMP: "This was seen too long ago. Look at the robot again.",
   REJECTED: "Where the robot was seen is too uncertain.",
   NO_ROBOT: "There is no such robot.",

@@ -59,7 +59,7 @@ function useSection(app: App): HTMLElement {
     el("div", { class: "row" }, label, button("Label", () => void editor.label(label.value.trim())),
       button("Label what I click…", () => void editor.touch(() => Promise.resolve(label.value.trim())), { title: "One touch: the whole thing that is there, without a selection" })),
     el("div", { class: "row" }, zone, kind, button("Add zone", () => void editor.zone(zone.value.trim(), kind.value as ZoneKind))),
-    button("Add as virtual obstacle", () => void app.addObstacle(), { title: "Robots take another way" }));
+    button("Add as virtual obstacle", () => void app.obstacles.add(), { title: "Robots take another way" }));
 }
 
 function zonesSection(app: App): HTMLElement {

@@ -23,17 +23,28 @@ export function historyPanel(app: App): HTMLElement {
   const list = live((redraw) => found.watch(redraw), () => {
     if (!found.value) return [none("Press Refresh to see what people changed.")];
     if (found.value.length === 0) return [none("Nobody has changed anything.")];
-    return found.value.map((operation) => operationRow(app, operation, refresh));
+    const edits = new Map(found.value.filter(isEdit).map((operation) => [operation.operation, operation]));
+    return found.value.map((operation) => operationRow(app, operation, edits, refresh));
   });
   return el("div", {}, section("History", field("By", author), button("Refresh", () => void refresh(), { class: "main" }), list));
 }
 
-function operationRow(app: App, operation: Operation, refresh: () => Promise<void>): HTMLElement {
-  const { author, what, subject, count, utime, active, operation: edit } = operation;
-  const words = `${author || "somebody"} ${kWords[what]} ${subject || (what === "undo" || what === "redo" ? "an edit" : "")} ${count > 0 ? counted(count, "voxel") : ""}`.trim();
+const isEdit = ({ what }: Operation): boolean => what === "add" || what === "delete" || what === "move";
+
+/** What was done, in words. @param edits by their ids: an undo names the edit that it takes back */
+export function operationWords(operation: Operation, edits: ReadonlyMap<string, Operation>): string {
+  const { author, what, subject, count } = operation;
+  const who = `${author || "somebody"} ${kWords[what]}`;
+  if (what !== "undo" && what !== "redo") return [who, subject, count > 0 ? counted(count, "voxel") : ""].filter(Boolean).join(" ");
+  const edit = edits.get(subject);
+  return edit ? `${who}: ${operationWords(edit, edits)}` : `${who} ${subject || "an edit"}`;
+}
+
+function operationRow(app: App, operation: Operation, edits: ReadonlyMap<string, Operation>, refresh: () => Promise<void>): HTMLElement {
+  const { utime, active, operation: edit } = operation;
+  const words = operationWords(operation, edits);
   const time = new Date(utime / 1000).toLocaleTimeString([], { hour: "2-digit", minute: "2-digit" });
-  const isEdit = what === "add" || what === "delete" || what === "move";
   const turn = (): Promise<unknown> => (active ? app.news.tell(app.ask("undo", { edit }), () => "Undone.") : app.news.tell(app.ask("redo", { edit }), () => "Done again."));
-  return el("div", { class: active || !isEdit ? "row between" : "row between undone" }, el("span", {}, el("time", {}, time), ` ${words}`),
-    ...(isEdit && app.mayEdit ? [button(active ? "Undo" : "Redo", () => void turn().then(refresh), { "aria-label": `${active ? "Undo" : "Redo"}: ${words}` })] : []));
+  return el("div", { class: active || !isEdit(operation) ? "row between" : "row between undone" }, el("span", {}, el("time", {}, time), ` ${words}`),
+    ...(isEdit(operation) && app.mayEdit ? [button(active ? "Undo" : "Redo", () => void turn().then(refresh), { "aria-label": `${active ? "Undo" : "Redo"}: ${words}` })] : []));
 }

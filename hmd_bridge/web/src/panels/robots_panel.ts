@@ -14,10 +14,10 @@ export function robotsPanel(app: App): HTMLElement {
     },
     () => (world.robots().length === 0 ? [none("There are no robots.")] : world.robots().map(({ agent, aligned }) => robotCard(app, agent, aligned))),
   );
-  const obstacles = live((redraw) => app.obstacles.watch(redraw), () => {
-    if (app.obstacles.value.length === 0) return [none("Select a box under Edit, then Add as virtual obstacle.")];
-    return app.obstacles.value.map((obstacle, i) =>
-      el("div", { class: "row between" }, `Obstacle ${i + 1}`, button("Remove", () => void app.removeObstacle(obstacle), { "aria-label": `Remove obstacle ${i + 1}` })));
+  const obstacles = live((redraw) => app.obstacles.own.watch(redraw), () => {
+    if (app.obstacles.own.value.length === 0) return [none("Select a box under Edit, then Add as virtual obstacle.")];
+    return app.obstacles.own.value.map((obstacle, i) =>
+      el("div", { class: "row between" }, `Obstacle ${i + 1}`, button("Remove", () => void app.obstacles.remove(obstacle), { "aria-label": `Remove obstacle ${i + 1}` })));
   });
   return el("div", {}, section("Robots", list), section("Colours of a path", legend()), section("Virtual obstacles", obstacles));
 }

@@ -1,6 +1,6 @@
 /** Labelled things, assets that can be put into the map, and what detectors propose. */
 import type { App } from "../app";
-import type { Asset, Instance, Label } from "../../generated/messages";
+import type { Answers, Asset, Instance, Label } from "../../generated/messages";
 import { button, el, live, none, section } from "../base/dom";
 import { counted } from "../base/news";
 import { Signal } from "../base/signal";
@@ -49,10 +49,10 @@ function thingCard(app: App, thing: Instance): HTMLElement {
 
 /** Classes of things, each of which can be taken away as a whole. */
 function classesSection(app: App): HTMLElement {
-  const labels = new Signal<Label[] | null>(null);
+  const labels = new Signal<Answers["labels"] | null>(null);
   const refresh = async (): Promise<void> => {
     const answer = await app.news.tell(app.ask("labels", {}), () => null);
-    if (answer) labels.set(answer.labels);
+    if (answer) labels.set(answer);
   };
   const remove = async ({ label, name }: Label): Promise<void> => {
     const asked = app.ask("label_delete", { label, keep_voxels: true });
@@ -69,13 +69,15 @@ function classesSection(app: App): HTMLElement {
   };
   const list = live((redraw) => labels.watch(redraw), () => {
     if (!labels.value) return [];
-    if (labels.value.length === 0) return [none("There are no labels.")];
-    return labels.value.map((label) => {
+    const { labels: first, in_all: inAll } = labels.value;
+    if (inAll === 0) return [none("There are no labels.")];
+    const rows = first.map((label) => {
       const name = el("input", { type: "text", maxlength: 40, class: "short", "aria-label": `New name of ${label.name}` });
       return el("div", { class: "row between" }, `${label.name}: ${counted(label.instances, "thing")}`, name,
         button("Rename", () => void rename(label, name.value.trim()), { disabled: !app.mayEdit, "aria-label": `Rename the label ${label.name}` }),
         button("Drop", () => void remove(label), { class: "danger", disabled: !app.mayEdit, "aria-label": `Drop the label ${label.name}` }));
     });
+    return inAll > first.length ? [...rows, none(`The first ${first.length} of ${counted(inAll, "label")}.`)] : rows;
   });
   return section("Labels", button("List labels", () => void refresh()), list);
 }

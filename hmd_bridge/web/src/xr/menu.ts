@@ -73,8 +73,8 @@ export class Menu {
     move: () => void this.app.editor.move(),
     undo: () => void this.app.editor.undo(),
     redo: () => void this.app.editor.redo(),
-    obstacle: () => void this.app.addObstacle(),
-    removeObstacle: () => void this.app.removeObstacle(this.app.obstacles.value.at(-1)!),
+    obstacle: () => void this.app.obstacles.add(),
+    removeObstacle: () => void this.app.obstacles.remove(this.app.obstacles.own.value.at(-1)!),
     label: () => void this.withText("What is it?", (text) => this.app.editor.label(text)),
     touch: () => void this.app.editor.touch(() => this.text("What is it?")),
     pick: () => void this.pick(),
@@ -157,7 +157,7 @@ export class Menu {
       { id: `robot send/${agent}`, title: "Send to…", disabled: !this.app.mayDrive },
       { id: `robot here/${agent}`, title: "Is here…", disabled: !this.app.mayDrive },
     ]);
-    return { title: "Robots: press a name for its path", rows: [...rows, [kBack, { id: "do removeObstacle", title: "Remove last obstacle", share: 2, disabled: this.app.obstacles.value.length === 0 }]] };
+    return { title: "Robots: press a name for its path", rows: [...rows, [kBack, { id: "do removeObstacle", title: "Remove last obstacle", share: 2, disabled: this.app.obstacles.own.value.length === 0 }]] };
   }
 
   private aligning(): Omit<PanelPage, "words"> {
