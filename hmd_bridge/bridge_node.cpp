@@ -92,7 +92,7 @@ void BridgeNode::on_path(const concord::Path& path) {
     desk_.paths.insert_or_assign(path.id, path);
     asker_.arrived(path.id);
   }
-  if (!path.active) return;  // the answer to a question, or one whose place another has taken
+  if (!path.active) return tell_ended(path);
   for (auto& [number, session] : hub_.sessions()) {
     const auto followed = session.path_frames.find(path.robot);
     if (!session.connection || followed == session.path_frames.end()) continue;
@@ -105,6 +105,20 @@ void BridgeNode::on_path(const concord::Path& path) {
     if (!shown) continue;
     session.told_paths.insert_or_assign(path.robot, told);
     hub_.tell(session, "path/" + path.robot, event_text(PathEvent{path.robot, *shown}));
+  }
+}
+
+/// The answer to a question is no news to anybody else; the end of what a client was told last is.
+void BridgeNode::tell_ended(const concord::Path& path) {
+  for (auto& [number, session] : hub_.sessions()) {
+    const auto told = session.told_paths.find(path.robot);
+    const auto followed = session.path_frames.find(path.robot);
+    if (told == session.told_paths.end() || told->second.id != path.id) continue;
+    session.told_paths.erase(told);
+    if (!session.connection || followed == session.path_frames.end()) continue;
+    if (const auto shown = desk_.show(session, Desk::no_path(path.robot), followed->second)) {
+      hub_.tell(session, "path/" + path.robot, event_text(PathEvent{path.robot, *shown}));
+    }
   }
 }
 

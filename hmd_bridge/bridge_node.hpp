@@ -25,6 +25,7 @@ class BridgeNode {
 
  private:
   [[nodiscard]] Hub::Handlers handlers();
+  void tell_ended(const concord::Path& path);
   void on_path(const concord::Path& path);
   void hear_parts();
 

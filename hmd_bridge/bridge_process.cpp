@@ -19,7 +19,8 @@ namespace asio = boost::asio;
 
 constexpr std::chrono::milliseconds kWait(5);  ///< the bus's timers are due to so much
 constexpr std::chrono::milliseconds kFarewell(300);
-constexpr int kTurns = 64;  ///< of clients, between two of the bus
+constexpr std::int64_t kTokens = 5'000'000;  ///< microseconds: so soon who has lost their token is out
+constexpr int kTurns = 64;                   ///< of clients, between two of the bus
 
 /// Where models are is told to who may know it, and changes with each start.
 std::string models_address() { return "/models/" + random_secret() + "/"; }
@@ -62,6 +63,7 @@ class BridgeProcess::Parts {
         server(io, node.hub(), gate, tokens, files, server_config(context.site, options.listener),
                [&bus = context.bus] { return bus.now(); }) {
     files.serve_models(models, context.site.state / "assets" / "gltf");
+    context.bus.every(kTokens, [this] { node.hub().keep_only([this](const Identity& who) { return holds(who); }); });
   }
 
   asio::io_context io{1};
@@ -72,6 +74,12 @@ class BridgeProcess::Parts {
   BridgeNode node;
   Server server;
   std::unique_ptr<asio::posix::stream_descriptor> bus_ready;
+
+  /// Tokens that cannot be read just now are as they were.
+  bool holds(const Identity& who) {
+    const auto now = tokens.named(who.name);
+    return !now || (*now && (*now)->role == who.role);
+  }
 
   void watch(LcmBus& bus) {
     bus_ready->async_wait(asio::posix::stream_descriptor::wait_read,

@@ -10,6 +10,8 @@ namespace concord::hmd {
 namespace {
 
 constexpr double kTriesPerSecond = 1, kTriesAtOnce = 30;
+constexpr double kLinesPerSecond = 1, kLinesAtOnce = 100;
+constexpr double kRequestsPerSecond = 100, kRequestsAtOnce = 1000;
 constexpr double kBytesPerSecond = 16e6, kBytesAtOnce = 256e6;
 
 std::string lower(std::string text) {
@@ -59,7 +61,15 @@ bool origin_allowed(const std::string& origin, const std::string& scheme, const 
 }
 
 bool Gate::may_try(const std::string& address, std::int64_t now) {
-  return take(tries_, address, TokenBucket(kTriesPerSecond, kTriesAtOnce), 1, now);
+  return take(tries_, network_of(address), TokenBucket(kTriesPerSecond, kTriesAtOnce), 1, now);
+}
+
+bool Gate::may_ask(const std::string& address, std::int64_t now) {
+  return take(asked_, network_of(address), TokenBucket(kRequestsPerSecond, kRequestsAtOnce), 1, now);
+}
+
+bool Gate::may_be_noted(const std::string& address, std::int64_t now) {
+  return take(noted_, network_of(address), TokenBucket(kLinesPerSecond, kLinesAtOnce), 1, now);
 }
 
 bool Gate::may_take(const std::string& address, std::size_t bytes, std::int64_t now) {

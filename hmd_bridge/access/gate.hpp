@@ -38,7 +38,7 @@ struct Identity {
 [[nodiscard]] bool origin_allowed(const std::string& origin, const std::string& scheme, const std::string& host,
                                   const std::vector<std::string>& also);
 
-/// One-use tickets, and how often an address may try. Everything it keeps is bounded.
+/// One-use tickets, and how often a network may do what. Everything it keeps is bounded.
 class Gate {
  public:
   static constexpr std::int64_t kTicketLife = 10'000'000;  ///< microseconds
@@ -48,8 +48,12 @@ class Gate {
   /// `new_secret` answers a text that nobody can guess, another one each time.
   explicit Gate(std::function<std::string()> new_secret) : new_secret_(std::move(new_secret)) {}
 
-  /// Whether this address may try (a token, a connection) once more: 1 a second, 30 at once.
+  /// Whether this network may try (a token, a connection) once more: 1 a second, 30 at once.
   [[nodiscard]] bool may_try(const std::string& address, std::int64_t now);
+  /// Whether it may send one HTTP request more: 100 a second, 1,000 at once.
+  [[nodiscard]] bool may_ask(const std::string& address, std::int64_t now);
+  /// Whether one more refusal of it is worth a line of the log: 1 a second, 100 at once.
+  [[nodiscard]] bool may_be_noted(const std::string& address, std::int64_t now);
   /// Whether this network may have so much of files and models now: 16 MB a second, 256 MB at once.
   [[nodiscard]] bool may_take(const std::string& address, std::size_t bytes, std::int64_t now);
   /// A ticket for who has shown a token; nothing while kMaxTickets wait.
@@ -67,8 +71,8 @@ class Gate {
 
   std::function<std::string()> new_secret_;
   std::map<std::string, Ticket> tickets_;
-  using Buckets = std::map<std::string, TokenBucket>;  ///< by address, or network
-  Buckets tries_, taken_;
+  using Buckets = std::map<std::string, TokenBucket>;  ///< by network
+  Buckets tries_, asked_, noted_, taken_;
 };
 
 }  // namespace concord::hmd

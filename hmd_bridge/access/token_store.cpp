@@ -113,20 +113,27 @@ Result<std::vector<TokenStore::Entry>> TokenStore::list() {
   });
 }
 
-// Anybody may ask whether a token is one: this writes nothing and waits for nobody.
 Result<std::optional<Identity>> TokenStore::find(const std::string& token) {
+  if (token.size() > kMaxToken) return std::optional<Identity>();
+  return look_up("SELECT name, role FROM tokens WHERE hash = ?", sha256(token));
+}
+
+Result<std::optional<Identity>> TokenStore::named(const std::string& name) {
+  return look_up("SELECT name, role FROM tokens WHERE name = ?", name);
+}
+
+// Anybody may ask whether a token is one: this writes nothing and waits for nobody.
+Result<std::optional<Identity>> TokenStore::look_up(const char* query, const std::string& key) {
   std::error_code ignored;
-  if (token.size() > kMaxToken || !std::filesystem::exists(file_, ignored)) return std::optional<Identity>();
+  if (!std::filesystem::exists(file_, ignored)) return std::optional<Identity>();
   sqlite3* opened = nullptr;
   int status = sqlite3_open_v2(file_.c_str(), &opened, SQLITE_OPEN_READWRITE, nullptr);
   const std::unique_ptr<sqlite3, Close> handle(opened);
   sqlite3_stmt* prepared = nullptr;
-  if (status == SQLITE_OK)
-    status = sqlite3_prepare_v2(handle.get(), "SELECT name, role FROM tokens WHERE hash = ?", -1, &prepared, nullptr);
+  if (status == SQLITE_OK) status = sqlite3_prepare_v2(handle.get(), query, -1, &prepared, nullptr);
   const std::unique_ptr<sqlite3_stmt, Finalize> find(prepared);
-  const std::string hash = sha256(token);
   if (status == SQLITE_OK)
-    status = sqlite3_bind_text(find.get(), 1, hash.data(), static_cast<int>(hash.size()), SQLITE_TRANSIENT);
+    status = sqlite3_bind_text(find.get(), 1, key.data(), static_cast<int>(key.size()), SQLITE_TRANSIENT);
   if (status == SQLITE_OK) status = sqlite3_step(find.get());
   if (status == SQLITE_DONE) return std::optional<Identity>();
   if (status != SQLITE_ROW) {

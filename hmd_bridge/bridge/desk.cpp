@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/text.hpp"
+
 namespace concord::hmd {
 namespace {
 
@@ -58,6 +60,14 @@ Granted<Transform> Desk::in_map(const Ask& ask, Frame frame, const Pose& pose) {
   return where->T_map_frame * *T;
 }
 
+concord::Path Desk::no_path(const std::string& robot) {
+  concord::Path none;
+  none.robot = robot;
+  none.status = "NO_PATH";
+  none.message = "no path is kept for it now; send it somewhere";
+  return none;
+}
+
 Granted<Path> Desk::show(const Ask& ask, const concord::Path& path, Frame frame) {
   return show(*hub.find(ask.session), path, frame);
 }
@@ -66,13 +76,13 @@ Granted<Path> Desk::show(const Session& session, const concord::Path& path, Fram
   const auto where = place(session, frame);
   if (!where) return tl::unexpected(where.error());
   Path out{path.robot,
-           path.status.substr(0, 40),
-           path.message.substr(0, 400),
+           cut_to(path.status, 40),
+           cut_to(path.message, 400),
            frame,
            {},
            path.length,
            path.least_clearance,
-           path.id.substr(0, 80),
+           cut_to(path.id, 80),
            path.plan_number,
            path.map_revision,
            path.active,
@@ -83,7 +93,7 @@ Granted<Path> Desk::show(const Session& session, const concord::Path& path, Fram
   const Transform T_frame_map = where->T_map_frame.inverse();
   if (!path.details.empty()) out.seconds = path.details.back().eta;
   for (const std::string& zone : path.zones) {
-    if (out.zones.size() < kMaxZones) out.zones.push_back(zone.substr(0, 80));
+    if (out.zones.size() < kMaxZones) out.zones.push_back(cut_to(zone, 80));
   }
   if (path.failed_leg >= 0) out.failed_leg = path.failed_leg;
   if (path.nearest)

@@ -68,6 +68,8 @@ class Desk {
     return asker.id_of(ask.session, 0) + "-" + name;
   }
 
+  /// What is shown of a robot for which no path is kept.
+  [[nodiscard]] static concord::Path no_path(const std::string& robot);
   /// A path for the client that asked: points at most 0.25 m apart, each with its clearance, in the frame it wants.
   [[nodiscard]] Granted<Path> show(const Ask& ask, const concord::Path& path, Frame frame);
   [[nodiscard]] Granted<Path> show(const Session& session, const concord::Path& path, Frame frame);

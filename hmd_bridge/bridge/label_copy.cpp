@@ -1,5 +1,7 @@
 #include "bridge/label_copy.hpp"
 
+#include <set>
+
 namespace concord::hmd {
 namespace {
 
@@ -38,16 +40,26 @@ void LabelCopy::take(BrickIndex index, Brick brick) {
   if (map_.set(index, std::move(brick)) && layer.revision == before) layers.touch(layer, index);
 }
 
-/// Voxels may have come before what their slots mean.
+/// Voxels may have come before what their slots mean; and a semantic process that was started anew gives the same slots
+/// to other things.
 void LabelCopy::take_slots(const std::vector<LabelSlot>& slots) {
-  const std::size_t known = slots_.size();
-  for (const LabelSlot& slot : slots) slots_.insert_or_assign(slot.slot, slot.of);
-  if (slots_.size() == known) return;
+  const std::map<std::int32_t, InstanceId> before = std::exchange(slots_, {});
+  std::set<std::int32_t> news;
+  for (const LabelSlot& slot : slots) {
+    slots_.insert_or_assign(slot.slot, slot.of);
+    const auto was = before.find(slot.slot);
+    if (was == before.end() || was->second != slot.of) news.insert(slot.slot);
+  }
+  for (const auto& [slot, of] : before) {
+    if (!slots_.contains(slot)) news.insert(slot);
+  }
+  if (news.empty()) return;
   Layers& layers = hub_.layers();
   for (const BrickIndex index : map_.sorted_bricks()) {
     bool is_news = false;
-    map_.find(index)->for_each(
-        [&](int, LogOdds value) { is_news = is_news || static_cast<std::size_t>(slot_of_value(value)) >= known; });
+    map_.find(index)->for_each([&](int, LogOdds value) {
+      is_news = is_news || news.contains(static_cast<std::int32_t>(slot_of_value(value)));
+    });
     if (is_news) layers.touch(*layers.find(kLabelStream), index);
   }
 }

@@ -120,7 +120,6 @@ Granted<std::shared_ptr<OwnMaps::Own>> OwnMaps::open(const Session& session) {
     own->changed.clear();
     own->occupied = 0;
     own->anew = false;
-    own->has_looks = false;
     if (own->begun) own->sender.begin(own->frame_id);
   }
   return own;
@@ -131,12 +130,6 @@ void OwnMaps::upload(const Ask& ask, PackedFrame frame) {
   const auto opened = open(session);
   if (!opened) return desk_.refuse(ask, opened.error());
   const std::shared_ptr<Own>& own = *opened;
-  // Published, a part of a room would take the place of the whole that the stack still has.
-  if (!own->has_looks && frame.head.revision != 0) {
-    return desk_.refuse(
-        ask,
-        {Code::kBadFrame, "nothing of this frame is held here any more; send the whole room again, from sequence 0"});
-  }
   LookJudge::Look look{session.agent, own->mapper, own->anew, std::move(frame), {}, {}};
   look.on_brick = [own, mapper = own->mapper](BrickIndex index, Brick brick) {
     if (own->mapper != mapper) return;  // its frame is over
@@ -156,7 +149,6 @@ void OwnMaps::upload(const Ask& ask, PackedFrame frame) {
   if (!judge_.offer(std::move(look)))
     return desk_.hub.refuse(ask, Code::kRate, "looks before this one are still being judged; offer it again");
   own->anew = false;
-  own->has_looks = true;
 }
 
 void OwnMaps::publish(Own& own) {

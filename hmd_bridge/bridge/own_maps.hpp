@@ -34,7 +34,6 @@ class OwnMaps {
     Own(const NodeContext& context, const std::string& agent);
     std::shared_ptr<RoomMapper> mapper;  ///< the judge's, while a look waits
     bool anew = false;                   ///< sequences begin anew with the next look
-    bool has_looks = false;              ///< of this frame
     BrickMap map;                        ///< what has been judged
     std::int64_t occupied = 0;
     std::set<BrickIndex> changed;  ///< since it was published

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "bridge/requests.hpp"
+#include "core/text.hpp"
 
 namespace concord::hmd {
 namespace {
@@ -29,7 +30,7 @@ Alignments& alignments_of(Desk& desk) { return *std::static_pointer_cast<Alignme
 Evidence to_hmd(const concord::Alignment& e) {
   Evidence evidence{e.overlap(), e.rms, e.free_space_violation, e.iterations, e.ms, {}};
   for (const std::string& direction : e.loose) {
-    if (evidence.loose.size() < 6) evidence.loose.push_back(direction.substr(0, 80));
+    if (evidence.loose.size() < 6) evidence.loose.push_back(cut_to(direction, 80));
   }
   return evidence;
 }
@@ -102,7 +103,7 @@ void work_on(Desk& desk, const Ask& ask, const AlignRequest& request) {
   }
   ask_align(desk, ask, std::move(align), [&desk, ask](const AlignResult& result) {
     const concord::Alignment& e = result.evidence;
-    desk.hub.answer(ask, AlignAnswer{result.id, hmd::to_hmd(e.T_target_source), to_hmd(e), e.message.substr(0, 400)});
+    desk.hub.answer(ask, AlignAnswer{result.id, hmd::to_hmd(e.T_target_source), to_hmd(e), cut_to(e.message, 400)});
   });
 }
 
@@ -137,7 +138,7 @@ void work_on(Desk& desk, const Ask& ask, const ReferenceRequest& request) {
   ask_align(desk, ask, std::move(align), [&desk, ask, T_agent_base](const AlignResult& result) {
     const concord::Alignment& e = result.evidence;
     const Transform T_robot_own = T_agent_base.inverse() * e.T_target_source;
-    desk.hub.answer(ask, ReferenceAnswer{result.id, hmd::to_hmd(T_robot_own), to_hmd(e), e.message.substr(0, 400)});
+    desk.hub.answer(ask, ReferenceAnswer{result.id, hmd::to_hmd(T_robot_own), to_hmd(e), cut_to(e.message, 400)});
   });
 }
 

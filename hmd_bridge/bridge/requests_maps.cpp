@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "bridge/requests.hpp"
+#include "core/text.hpp"
 
 namespace concord::hmd {
 namespace {
@@ -91,7 +92,7 @@ void work_on(Desk& desk, const Ask& ask, const MapsRequest& /*request*/) {
   list_maps(desk, ask, desk.id(ask), [&desk, ask](const MapList& list) {
     MapsAnswer answer;
     for (const auto& [file, bytes] : list.files) {
-      if (answer.maps.size() < 1000) answer.maps.push_back({file.substr(0, 60), bytes});
+      if (answer.maps.size() < 1000) answer.maps.push_back({cut_to(file, 60), bytes});
     }
     desk.hub.answer(ask, answer);
   });

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "bridge/requests.hpp"
+#include "core/text.hpp"
 
 namespace concord::hmd {
 namespace {
@@ -156,8 +157,11 @@ void run_scene(Desk& desk, const Ask& ask, const std::shared_ptr<SceneRun>& run)
   desk.asker.ask(std::move(question), [&desk, ask, run, is_edit, id](const Answer& answer) {
     if (desk.hub.find(ask.session) == nullptr) return;
     if (!answer.ok) {
-      const std::string done = "; " + std::to_string(run->next - 1) + " steps before it were done";
-      return desk.hub.refuse(ask, zone_code(answer.code), answer.message + done);
+      const Code code = zone_code(answer.code);
+      if (run->next == 1) return desk.hub.refuse(ask, code, answer.message);
+      run->answer.revision = run->base;
+      run->answer.stopped = Refusal{code, cut_to(answer.message, 400), may_retry(code)};
+      return desk.hub.answer(ask, run->answer);
     }
     if (answer.revision == run->base + 1) run->base = answer.revision;
     run->answer.revision = answer.revision;

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "bridge/requests.hpp"
+#include "core/text.hpp"
 
 namespace concord::hmd {
 namespace {
@@ -97,13 +98,13 @@ void await_replan(Desk& desk, std::shared_ptr<ReplanWait> wait, std::int64_t cor
         note_revision(*wait, desk.world.map_edits());
         std::size_t seen = 0;
         for (const auto& [robot, number] : wait->before) {
-          const concord::Path* path = desk.world.active_path(robot);
+          const concord::Path* path = desk.world.last_path(robot);  // a planner that is silent has not ended it
           if (path == nullptr) {
             ++seen;  // it ended meanwhile
             continue;
           }
           if (wait->revision && path->map_revision >= *wait->revision) ++seen;
-          found.push_back({robot, path->status.substr(0, 40), path->plan_number != number, path->plan_number});
+          found.push_back({robot, cut_to(path->status, 40), path->plan_number != number, path->plan_number});
         }
         const bool all = seen == wait->before.size();
         if (!late && !all) return;
@@ -146,11 +147,7 @@ void work_on(Desk& desk, const Ask& ask, const PathRequest& request) {
     session.outbox.forget("path/" + request.robot);
   }
   const concord::Path* path = desk.world.active_path(request.robot);
-  concord::Path none;
-  none.robot = request.robot;
-  none.status = "NO_PATH";
-  none.message = "no path is kept for it now; send it somewhere";
-  const auto shown = desk.show(ask, path != nullptr ? *path : none, request.frame);
+  const auto shown = desk.show(ask, path != nullptr ? *path : Desk::no_path(request.robot), request.frame);
   if (!shown) return desk.refuse(ask, shown.error());
   desk.hub.answer(ask, PathAnswer{*shown});
 }

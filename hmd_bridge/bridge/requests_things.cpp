@@ -6,6 +6,7 @@
 #include "bridge/requests.hpp"
 #include "bus/messages_asset.hpp"
 #include "bus/messages_detection.hpp"
+#include "core/text.hpp"
 
 namespace concord::hmd {
 namespace {
@@ -131,7 +132,7 @@ void work_on(Desk& desk, const Ask& ask, const DetectionConfirmRequest& request)
       [&desk, ask, undo = edit_of_asset(decision.id)](const Answer& answer, const std::vector<LabelInstance>& made) {
         const InstanceId of = made.empty() ? InstanceId{} : made.front().of;
         desk.hub.answer(ask, DetectionConfirmAnswer{of.label, of.instance, answer.count, answer.revision, undo,
-                                                    answer.message.substr(0, 400)});
+                                                    cut_to(answer.message, 400)});
       },
       [&desk, thing = decision.thing](const std::string& code) {
         if (code == "NOT_FOUND" && desk.world.things().thing(thing) != nullptr) return Code::kNoAsset;

@@ -140,6 +140,11 @@ const concord::Path* World::active_path(const std::string& robot) const {
   return it != paths_.end() && context_.bus.now() - it->second.heard < kSilent ? &it->second.path : nullptr;
 }
 
+const concord::Path* World::last_path(const std::string& robot) const {
+  const auto it = paths_.find(robot);
+  return it != paths_.end() ? &it->second.path : nullptr;
+}
+
 std::vector<const concord::Path*> World::active_paths() const {
   std::vector<const concord::Path*> paths;
   for (const auto& [robot, seen] : paths_) {

@@ -79,6 +79,8 @@ class World {
   /// The path that is kept for a robot; null if there is none, or nobody has said it for a while.
   [[nodiscard]] const concord::Path* active_path(const std::string& robot) const;
   [[nodiscard]] std::vector<const concord::Path*> active_paths() const;
+  /// As it was said last, however long ago; null if there is none, or it has ended.
+  [[nodiscard]] const concord::Path* last_path(const std::string& robot) const;
   [[nodiscard]] const std::vector<concord::Zone>& zones() const { return zones_.items(); }
   [[nodiscard]] const Things& things() const { return things_; }
   [[nodiscard]] bool alive(const std::string& process) const;

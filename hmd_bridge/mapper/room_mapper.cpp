@@ -25,6 +25,10 @@ LogOdds log_odds_of(double p) {
 }
 
 Result<void> check_sequence(std::int64_t sequence, std::int64_t next) {
+  if (next == 0 && sequence != 0) {
+    return refuse(concord::Code::kBadFrame,
+                  "nothing of this frame is held here any more; send the whole room again, from sequence 0");
+  }
   if (sequence >= next) return {};
   return refuse(Code::kStale, "this sequence was sent before; the next is " + std::to_string(next));
 }
@@ -53,6 +57,12 @@ Result<std::vector<VoxelIndex>> RoomMapper::cells_of(const MeshPart& part, std::
 
 bool RoomMapper::reached(VoxelIndex voxel, const Eigen::Vector3d& sensor) const {
   return (centre_of(voxel, resolution_) - sensor).squaredNorm() <= kReach * kReach;
+}
+
+void RoomMapper::end_sequence() {
+  next_sequence_ = 0;
+  meshes_.clear();
+  met_cells_ = 0;
 }
 
 Result<void> RoomMapper::take(const MeshLook& look, std::int64_t sequence) {

@@ -31,12 +31,14 @@ class RoomMapper {
   explicit RoomMapper(double resolution) : resolution_(resolution) {}
 
   /// Refused, and nothing has changed: meshes or a map larger than the limits (kTooLarge), a sensor or mesh beyond any
-  /// map (kOutOfBounds), a sequence that came before (kStale).
+  /// map (kOutOfBounds), a sequence that came before (kStale), a first one above 0 (kBadFrame): what comes first is the
+  /// whole room, and a part of it would take the place of the whole that others still have.
   [[nodiscard]] Result<void> take(const MeshLook& look, std::int64_t sequence);
   /// Refused also: another resolution (kBadResolution), no voxel (kEmpty).
   [[nodiscard]] Result<void> take(const VoxelLook& look, std::int64_t sequence);
-  /// The sequence may begin anew.
-  void end_sequence() { next_sequence_ = 0; }
+  /// The sequence begins anew, with the whole room: meshes are met no more unless they come again. What they made of
+  /// the map stays, and goes as what none meets.
+  void end_sequence();
 
   [[nodiscard]] const BrickMap& map() const { return map_; }
   /// Bricks that have changed since the last call, ascending.

@@ -1,5 +1,7 @@
 #include "protocol/control.hpp"
 
+#include "core/text.hpp"
+
 namespace concord::hmd {
 namespace {
 
@@ -59,7 +61,7 @@ tl::expected<ClientText, BadText> read_client_text(std::string_view text) {
     if (json.size() != 3) return bad("a request is id, request and body", id);
     ClientRequest request{*id, {}};
     const std::optional<bool> read = read_request(*name, *body, request.body, problem);
-    if (!read) return bad("no request is called " + name->substr(0, 40), id);
+    if (!read) return bad("no request is called " + cut_to(*name, 40), id);
     if (!*read) return tl::unexpected<BadText>(BadText{id, in_words(*name, problem), problem.is_name});
     return ClientText(std::move(request));
   }
@@ -67,7 +69,7 @@ tl::expected<ClientText, BadText> read_client_text(std::string_view text) {
   if (name == nullptr || json.size() != 2) return bad("is neither a request nor a notice", id);
   NoticeBody notice;
   const std::optional<bool> read = read_notice(*name, *body, notice, problem);
-  if (!read) return bad("no notice is called " + name->substr(0, 40));
+  if (!read) return bad("no notice is called " + cut_to(*name, 40));
   if (!*read) return bad(in_words(*name, problem));
   return ClientText(std::move(notice));
 }
@@ -75,13 +77,13 @@ tl::expected<ClientText, BadText> read_client_text(std::string_view text) {
 std::string envelope(std::int64_t id, const char* what, Json body) {
   Json json = {{"id", id}};
   json[what] = std::move(body);
-  return json.dump();
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 std::string event_envelope(const char* name, Json body) {
   Json json = {{"event", name}};
   json["body"] = std::move(body);
-  return json.dump();
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 bool may_retry(Code code) {

@@ -186,7 +186,7 @@ class Members {
     if (failed_) return false;
     for (const auto& item : object_.items()) {
       if (std::find(known_.begin(), known_.end(), item.key()) == known_.end()) {
-        return problem_.say(" has an unknown member " + item.key().substr(0, 40));
+        return problem_.say(" has an unknown member " + cut_to(item.key(), 40));
       }
     }
     return true;

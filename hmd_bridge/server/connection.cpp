@@ -46,6 +46,10 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
   }
 
   void handle() {
+    if (!core_->gate.may_ask(address_, core_->now())) {
+      if (core_->gate.may_be_noted(address_, core_->now())) core_->hub.note_refused(address_, "page", "RATE");
+      return end();
+    }
     Request request = parser_->release();
     Peer peer{address_, false};
     // A page of another server is not local, even if the site file lets it in: it asks for a ticket.
@@ -63,7 +67,8 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
   Reply noted(Reply reply, const Request& request) {
     using S = http::status;
     const S status = reply.status();
-    if (status == S::unauthorized || status == S::forbidden || status == S::too_many_requests) {
+    const bool who = status == S::unauthorized || status == S::forbidden || status == S::too_many_requests;
+    if (who && core_->gate.may_be_noted(address_, core_->now())) {
       const char* what = request.target() == "/api/ticket" ? "ticket"
                          : request.target() == "/ws"       ? "connection"
                                                            : "page";

@@ -50,7 +50,12 @@ Reply ticket(Server::Core& core, const Request& request, const Peer& peer) {
   if (!authorization.starts_with(kBearer))
     return error(request, http::status::unauthorized, "Authorization: Bearer TOKEN is needed");
   const auto identity = core.tokens.find(authorization.substr(kBearer.size()));
-  if (!identity) return error(request, http::status::service_unavailable, "the tokens are being written; try again");
+  if (!identity && identity.error().code == concord::Code::kBusy)
+    return error(request, http::status::service_unavailable, "the tokens are being written; try again");
+  if (!identity) {
+    core.hub.note_refused(peer.address, "ticket", "IO: " + identity.error().message);
+    return error(request, http::status::internal_server_error, "the server cannot read its tokens; its log says why");
+  }
   if (!*identity) return error(request, http::status::unauthorized, "no such token");
   const auto issued = core.gate.issue(**identity, core.now());
   if (!issued) return error(request, http::status::service_unavailable, "too many tickets wait; try again in 10 s");

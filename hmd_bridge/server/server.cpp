@@ -112,17 +112,18 @@ std::vector<std::string> Server::Core::addresses() const {
 }
 
 std::shared_ptr<void> Server::Core::admit(const std::string& address) {
-  const auto same = by_address_.find(address);
+  const std::string network = network_of(address);
+  const auto same = by_network_.find(network);
   const std::size_t kept =
       is_loopback(address) ? 0 : std::min<std::size_t>(kLocalConnections, config.max_connections / 4);
   if (connections_ >= config.max_connections - kept) return nullptr;
-  if (!is_loopback(address) && same != by_address_.end() && same->second >= config.max_connections_per_address)
+  if (!is_loopback(address) && same != by_network_.end() && same->second >= config.max_connections_per_address)
     return nullptr;
   ++connections_;
-  ++by_address_[address];
-  return std::shared_ptr<void>(this, [self = shared_from_this(), address](void*) {
+  ++by_network_[network];
+  return std::shared_ptr<void>(this, [self = shared_from_this(), network](void*) {
     --self->connections_;
-    if (--self->by_address_[address] == 0) self->by_address_.erase(address);
+    if (--self->by_network_[network] == 0) self->by_network_.erase(network);
   });
 }
 

@@ -58,7 +58,7 @@ class Server::Core : public std::enable_shared_from_this<Server::Core> {
   void take(boost::asio::ip::tcp::socket socket);
 
   std::map<Hub::Connection, std::weak_ptr<Socket>> sockets_;
-  std::map<std::string, std::size_t> by_address_;
+  std::map<std::string, std::size_t> by_network_;
   std::size_t connections_ = 0;
 };
 

@@ -11,6 +11,7 @@
 #include <boost/beast/ssl.hpp>
 #include <boost/beast/websocket.hpp>
 
+#include "core/text.hpp"
 #include "server/reply.hpp"
 
 namespace concord::hmd {
@@ -99,7 +100,7 @@ class WebSocket final : public Socket, public std::enable_shared_from_this<WebSo
   void shut(std::uint16_t code, const std::string& reason) {
     closing_ = true;
     cut_later();
-    ws_.async_close(websocket::close_reason(static_cast<websocket::close_code>(code), reason.substr(0, 120)),
+    ws_.async_close(websocket::close_reason(static_cast<websocket::close_code>(code), cut_to(reason, 120)),
                     [self = this->shared_from_this()](beast::error_code) { self->leave(); });
   }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/text.hpp"
+
 namespace concord::hmd {
 namespace {
 
@@ -10,12 +12,12 @@ constexpr std::int64_t kSweep = 10'000'000;
 
 SharedText share(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
 
-Refusal refusal(Code code, const std::string& message) { return {code, message.substr(0, 400), may_retry(code)}; }
+Refusal refusal(Code code, const std::string& message) { return {code, cut_to(message, 400), may_retry(code)}; }
 
 /// What a request takes of those that a client may make: these walk over much of the map.
 double cost_of(const RequestBody& body) {
   const bool walks = std::holds_alternative<GridRequest>(body) || std::holds_alternative<SceneGetRequest>(body) ||
-                     std::holds_alternative<SaveRequest>(body);
+                     std::holds_alternative<SaveRequest>(body) || std::holds_alternative<MinimapRequest>(body);
   return walks ? 10 : 1;
 }
 
@@ -96,7 +98,7 @@ void Hub::text(Connection connection, std::string_view text, std::int64_t now) {
     if (bad.id) return refuse_now(connection, link, *session, *bad.id, "?", code, bad.message, now);
     audit(*session, "?", 0, text_of(code));
     count_refusal(connection, link, now);
-    return tell(*session, "bad", event_text(BadEvent{bad.message.substr(0, 400)}));
+    return tell(*session, "bad", event_text(BadEvent{cut_to(bad.message, 400)}));
   }
   const auto* request = std::get_if<ClientRequest>(&*read);
   if (session == nullptr) {
@@ -224,8 +226,8 @@ void Hub::close(Connection connection, Link& link, std::uint16_t code, Code why,
   if (code != 1001)
     handlers_.audit("refused " + who + "from=" + link.peer.address +
                     " request=connection close=" + std::to_string(code) + " outcome=" + text_of(why));
-  link.closing = Closing{code, message.substr(0, 100)};
-  link.last = share(event_text(ByeEvent{why, message.substr(0, 400)}));
+  link.closing = Closing{code, cut_to(message, 100)};
+  link.last = share(event_text(ByeEvent{why, cut_to(message, 400)}));
   ready_.insert(connection);
 }
 
@@ -263,15 +265,30 @@ void Hub::tick(std::int64_t now) {
   for (const auto& [number, session] : sessions_) {
     if (!session.connection) parked.emplace_back(session.parked_at, number);
   }
-  std::sort(parked.begin(), parked.end());
-  for (std::size_t i = 0; i < parked.size(); ++i) {
-    const bool old = now - parked[i].first > kParked;
-    if (old || parked.size() - i > static_cast<std::size_t>(kMaxParked)) sessions_.erase(parked[i].second);
+  std::sort(parked.rbegin(), parked.rend());
+  std::map<std::string, int> of_address;
+  int in_all = 0;
+  for (const auto& [since, number] : parked) {  // the latest first
+    const bool one_too_many = ++of_address[sessions_.at(number).address] > kMaxParkedOfOne || ++in_all > kMaxParked;
+    if (one_too_many || now - since > kParked) sessions_.erase(number);
   }
   tell_behind(now);
   if (now - last_sweep_ > kSweep) {
     last_sweep_ = now;
     sweep();
+  }
+}
+
+void Hub::keep_only(const std::function<bool(const Identity&)>& holds) {
+  for (auto it = sessions_.begin(); it != sessions_.end();) {
+    Session& session = it->second;
+    const bool good = !session.by_token || holds(session.identity);
+    if (!good && session.connection) {
+      close(*session.connection, links_.at(*session.connection), 1008, Code::kBadToken,
+            "this token was taken away, or has another role now");
+      session.secret = gate_.new_secret();  // nobody takes it up again
+    }
+    it = good || session.connection ? std::next(it) : sessions_.erase(it);
   }
 }
 

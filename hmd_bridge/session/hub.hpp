@@ -39,13 +39,13 @@ class Hub {
     std::size_t max_clients_per_address = 16;
     double resolution = 0.05;
   };
-  static constexpr std::int64_t kHelloWithin = 5'000'000;  ///< microseconds
-  static constexpr std::int64_t kParked = 120'000'000;     ///< a session outlives its connection by so long
-  static constexpr std::size_t kMaxPending = 64;           ///< requests of one client that wait
-  static constexpr std::int64_t kMaxParked = 64;
-  static constexpr std::size_t kLocalPlaces = 4;             ///< of max_clients, that nobody from elsewhere takes
-  static constexpr std::size_t kMaxUngreeted = 64;           ///< connections that have not said hello, from elsewhere
-  static constexpr std::size_t kMaxUngreetedPerNetwork = 8;  ///< of them from one address, or one IPv6 /64
+  static constexpr std::int64_t kHelloWithin = 5'000'000;      ///< microseconds
+  static constexpr std::int64_t kParked = 120'000'000;         ///< a session outlives its connection by so long
+  static constexpr std::size_t kMaxPending = 64;               ///< requests of one client that wait
+  static constexpr int kMaxParked = 64, kMaxParkedOfOne = 32;  ///< in all, and of one address
+  static constexpr std::size_t kLocalPlaces = 4;               ///< of max_clients, that nobody from elsewhere takes
+  static constexpr std::size_t kMaxUngreeted = 64;             ///< connections that have not said hello, from elsewhere
+  static constexpr std::size_t kMaxUngreetedPerNetwork = 8;    ///< of them from one address, or one IPv6 /64
 
   /// What becomes of what clients say; called from within text() and binary().
   struct Handlers {
@@ -83,6 +83,8 @@ class Hub {
   /// Connections for which next() or closing() may have something new since the last call.
   [[nodiscard]] std::vector<Connection> take_ready();
   void tick(std::int64_t now);
+  /// Ends the sessions of tokens that were taken away, or given another role.
+  void keep_only(const std::function<bool(const Identity&)>& holds);
   /// Says bye to all: the server ends.
   void end();
 
@@ -145,7 +147,8 @@ class Hub {
   [[nodiscard]] static tl::unexpected<Error> refuse_busy(const char* why);
   void begin(Connection connection, Link& link, Session& session, const HelloRequest& hello, std::int64_t id,
              bool resumed, std::int64_t now);
-  [[nodiscard]] static std::optional<Session::Kept> kept_of(const Session& session, std::int64_t revision);
+  [[nodiscard]] static std::optional<Session::Kept> kept_of(const Session& session, const ShownLayer& map,
+                                                            std::int64_t revision);
   [[nodiscard]] Session* resumable(const HelloRequest& hello, const Identity& identity);
   void take_request(Connection connection, Session& session, const ClientRequest& request, std::int64_t now);
   /// Whether the request is new; one that was asked before is answered from what was said.

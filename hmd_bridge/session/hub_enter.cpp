@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/text.hpp"
+
 namespace concord::hmd {
 namespace {
 
 SharedText share(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
 
-Refusal refusal(Code code, const std::string& message) { return {code, message.substr(0, 400), may_retry(code)}; }
+Refusal refusal(Code code, const std::string& message) { return {code, cut_to(message, 400), may_retry(code)}; }
 
 }  // namespace
 
@@ -44,6 +46,7 @@ void Hub::greet(Connection connection, Link& link, const ClientRequest& request,
   if (!has_place(link.peer)) return no(Code::kBusy, "there are as many clients as may be");
   ++last_session_;
   auto [it, fresh] = sessions_.try_emplace(last_session_, last_session_, gate_.new_secret(), identity, config_.limits);
+  it->second.by_token = hello.ticket.has_value();
   begin(connection, link, it->second, hello, request.id, false, now);
 }
 
@@ -58,8 +61,10 @@ Session* Hub::resumable(const HelloRequest& hello, const Identity& identity) {
 }
 
 /// What a client has that comes back with this revision, of the last complete that it heard.
-std::optional<Session::Kept> Hub::kept_of(const Session& session, std::int64_t revision) {
+std::optional<Session::Kept> Hub::kept_of(const Session& session, const ShownLayer& map, std::int64_t revision) {
   if (!session.whole || revision < session.whole->first || revision > session.whole->last) return std::nullopt;
+  // What was emptied after that may be forgotten here: sent on a connection that was dying, it never arrived.
+  if (map.store.dropped() > revision) return std::nullopt;
   return Session::Kept{session.whole->region, revision};
 }
 
@@ -77,7 +82,7 @@ void Hub::begin(Connection connection, Link& link, Session& session, const Hello
   session.outbox = Outbox();
   const ShownLayer* map = layers_.find(kMapStream);
   const bool has_blocks = resumed && map != nullptr && hello.resume->epoch == map->epoch;
-  session.kept = has_blocks ? kept_of(session, hello.resume->revision) : std::nullopt;
+  session.kept = has_blocks ? kept_of(session, *map, hello.resume->revision) : std::nullopt;
   session.whole.reset();
   session.views.clear();
   session.told_complete.clear();

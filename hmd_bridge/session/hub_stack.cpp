@@ -2,6 +2,8 @@
 
 #include "session/hub.hpp"
 
+#include "core/text.hpp"
+
 namespace concord::hmd {
 namespace {
 
@@ -121,7 +123,7 @@ void Hub::answer_text_to(const Ask& ask, SharedText text, const char* outcome) {
 }
 
 void Hub::refuse(const Ask& ask, Code code, const std::string& message) {
-  const Refusal why{code, message.substr(0, 400), may_retry(code)};
+  const Refusal why{code, cut_to(message, 400), may_retry(code)};
   answer_text_to(ask, share(error_text(ask.id, why)), text_of(code));
 }
 
@@ -135,7 +137,8 @@ void Hub::send(const Ask& ask, FramePointer frame) {
 }
 
 void Hub::enqueue(Connection connection, Link& link, FramePointer frame) {
-  if (link.asked_bytes + frame->size() > Outbox::kMostBytes) {
+  // One alone may be larger: whoever asks for it again would be thrown out again.
+  if (link.asked_bytes > 0 && link.asked_bytes + frame->size() > Outbox::kMostBytes) {
     return close(connection, link, 1013, Code::kTooLarge, "answers were not taken in time");
   }
   link.asked_bytes += frame->size();

@@ -67,6 +67,7 @@ struct Session {
   std::int64_t person;
   std::string secret;
   Identity identity;
+  bool by_token = false;  ///< not from this machine
   std::string device;
   std::string address;
   std::string agent;     ///< that it is; empty: none

@@ -144,6 +144,11 @@ FramePointer BlockStore::said(const BlockKey& key, const Block& block) const {
   return std::make_shared<const Bytes>(make_frame(head, what.payload));
 }
 
+void BlockStore::drop(const BlockKey& key) {
+  dropped_ = std::max(dropped_, revision(key));
+  blocks_.erase(key);
+}
+
 FramePointer BlockStore::frame(const BlockKey& key, std::int64_t since) {
   Block& block = blocks_.at(key);
   assert(block.revision > since);

@@ -62,7 +62,9 @@ class BlockStore {
 
   /// Blocks that are empty now and have been since before `revision`: forgotten if nobody needs to be told.
   [[nodiscard]] std::vector<BlockKey> emptied_before(std::int64_t revision) const;
-  void drop(const BlockKey& key) { blocks_.erase(key); }
+  void drop(const BlockKey& key);
+  /// Who has the layer as of an earlier revision than this may have blocks that were emptied and dropped since.
+  [[nodiscard]] std::int64_t dropped() const { return dropped_; }
 
   template <class Visit>
   void for_each(Visit&& visit) const {
@@ -99,6 +101,7 @@ class BlockStore {
   int levels_;
   Say say_;
   std::unordered_map<BlockKey, Block, BlockKeyHash> blocks_;
+  std::int64_t dropped_ = 0;
 };
 
 }  // namespace concord::hmd

@@ -74,6 +74,13 @@ bool is_tidy(std::string_view text) {
 
 }  // namespace
 
+std::string cut_to(std::string_view text, std::size_t most_bytes) {
+  std::size_t end = std::min(text.size(), most_bytes);
+  const auto is_inside = [&](std::size_t at) { return (static_cast<std::uint8_t>(text[at]) & 0xC0) == 0x80; };
+  while (end > 0 && end < text.size() && is_inside(end)) --end;
+  return std::string(text.substr(0, end));
+}
+
 bool is_utf8(std::string_view text) {
   return all_codes(text, [](std::uint32_t) { return true; });
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <string_view>
 
 namespace concord {
@@ -15,6 +16,10 @@ inline constexpr std::size_t kMaxIdBytes = 80;     ///< of request ids and autho
 /// Well-formed UTF-8 (RFC 3629) without zero bytes, at which LCM's encoder would cut: what JSON, logs and databases may
 /// be given.
 [[nodiscard]] bool is_utf8(std::string_view text);
+
+/// The longest beginning of a UTF-8 text that has at most so many bytes and ends between two characters: half a
+/// character is no text, and whoever writes it as JSON fails.
+[[nodiscard]] std::string cut_to(std::string_view text, std::size_t most_bytes);
 
 /// UTF-8 without ASCII control characters: one line. What was made under an earlier rule for names is still that, and
 /// stays readable: in stores, saved maps, and lists of what there is.

@@ -10,6 +10,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto read = read_client_text({reinterpret_cast<const char*>(data), size});
   if (!read) {
     fuzz::must(!read.error().message.empty());
+    static_cast<void>(Json(read.error().message).dump());  // throws if a character was cut in two
     return 0;
   }
   if (const auto* request = std::get_if<ClientRequest>(&*read)) {

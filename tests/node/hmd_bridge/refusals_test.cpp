@@ -62,6 +62,20 @@ TEST_F(Beside, SendingAScene) {
   EXPECT_CODE(ana.ask(SceneSendRequest{revision, Frame::kMap, {{EditOp::kAdd, inside}}, {}}), "LOCKED");
 }
 
+/// What was done is answered, not refused: the rest can be sent again.
+TEST_F(Beside, OfASceneThatIsStoppedTheRestCanBeSentAgain) {
+  const std::int64_t revision = ana.ask(SceneGetRequest{Frame::kMap, {3.2, 3.2, 0}, 20})["answer"]["revision"];
+  hold();
+  const Shape outside = box(1, 1, 0.2, 1.5, 1.5, 0.5);
+  const Json stopped =
+      ana.ask(SceneSendRequest{revision, Frame::kMap, {{EditOp::kAdd, outside}, {EditOp::kAdd, inside}}, {}})["answer"];
+  ASSERT_EQ(stopped["edits"].size(), 1u) << stopped;
+  EXPECT_EQ(stopped["stopped"]["code"], "LOCKED");
+  const Json rest = ana.ask(SceneSendRequest{stopped["revision"], Frame::kMap, {{EditOp::kAdd, outside}}, {}});
+  EXPECT_CODE(rest, "OK") << "what it did itself is no change by others";
+  EXPECT_FALSE(rest["answer"].contains("stopped")) << rest;
+}
+
 TEST_F(Beside, AddingAndRemovingAnObstacle) {
   const Volume there = Box{{3.2, 3.2, 0.2}, {3.4, 3.4, 0.4}};
   const std::int64_t revision = ana.ask(add(inside))["answer"]["revision"];

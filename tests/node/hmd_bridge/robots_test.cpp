@@ -153,6 +153,35 @@ TEST_F(Working, AnObstacleOfWhichNoPlannerSaysWhatItDoesIsTakenBack) {
   EXPECT_TRUE(code_of_answer(map) == "OK" && map["answer"]["voxels"]["boxes"].empty()) << map;
 }
 
+/// A planner that says nothing any more has not ended its paths.
+TEST_F(Working, AnObstacleAfterWhichThePlannerFallsSilentIsTakenBack) {
+  concord::Path path;
+  path.id = "old";
+  path.robot = "robot1";
+  path.active = true;
+  path.status = "OK";
+  lab.bus->publish("out/path/robot1", encode(path));
+  lab.run(0.1);
+  EXPECT_CODE(ana.ask(ObstacleAddRequest{Frame::kMap, Box{{3, 0, 0.1}, {3.2, 3, 0.8}}, {}}), "TIMEOUT");
+}
+
+TEST_F(Working, WhoFollowsAPathHearsThatItHasEnded) {
+  EXPECT_CODE(ana.ask(PathRequest{"robot1", Frame::kMap, true}), "OK");
+  EXPECT_CODE(ana.ask(GoalRequest{"robot1", Frame::kMap, Pose{{5, 1, 0}, {0, 0, 0, 1}}}), "OK");
+  lab.run(0.3);
+  ana.read();
+  ASSERT_EQ(ana.events["path"]["path"]["status"], "OK");
+  concord::PathRequest cancel;
+  cancel.id = "stop";
+  cancel.robot = "robot1";
+  cancel.op = concord::PathRequest::Op::kCancel;
+  lab.bus->publish("in/path_request", encode(cancel, lab.bus->now()));
+  lab.run(0.3);
+  ana.read();
+  EXPECT_EQ(ana.events["path"]["path"]["status"], "NO_PATH");
+  EXPECT_TRUE(ana.events["path"]["path"]["points"].empty());
+}
+
 /// Merge and the planner, played by hand: what others change meanwhile does not pass for one's own obstacle.
 class PlayedStack : public testing::Test {
  protected:

@@ -48,6 +48,26 @@ TEST_F(Bridge, WhoOnlyLooksCannotChange) {
   EXPECT_CODE(cleo.ask(GoalRequest{"robot1", Frame::kMap, kHere}), "DENIED");
 }
 
+TEST_F(Bridge, WhoseTokenIsTakenAwayIsOutForGood) {
+  HelloRequest hello;
+  hello.version = kProtocol;
+  hello.ticket = lab.gate->issue({"bert", Role::kEdit}, lab.bus->now());
+  Client bert(lab, {"10.0.0.7", false});
+  const Json first = bert.ask(hello);
+  ASSERT_TRUE(has_code(first, "OK"));
+  ASSERT_TRUE(has_code(ana.hello(), "OK"));
+  lab.bridge->hub().keep_only([](const Identity& who) { return who.name == "bert" && who.role == Role::kEdit; });
+  EXPECT_FALSE(lab.bridge->hub().closing(bert.connection));
+  lab.bridge->hub().keep_only([](const Identity&) { return false; });
+  EXPECT_EQ(lab.bridge->hub().closing(bert.connection)->code, 1008);
+  EXPECT_FALSE(lab.bridge->hub().closing(ana.connection)) << "this machine needs none";
+  bert.lose();
+  hello.ticket = lab.gate->issue({"bert", Role::kEdit}, lab.bus->now());
+  hello.resume = Resume{first["answer"]["session"], "", 0};
+  Client back(lab, {"10.0.0.7", false});
+  EXPECT_FALSE(back.ask(hello)["answer"]["resumed"].get<bool>()) << "by another token of this name, may be";
+}
+
 TEST_F(Bridge, WithoutHelloNothingGoes) {
   lab.bridge->hub().text(ana.connection, request_text(1, AgentsRequest{}), lab.bus->now());
   ana.read();
@@ -55,6 +75,51 @@ TEST_F(Bridge, WithoutHelloNothingGoes) {
   Client idle(lab);
   lab.run(6);
   EXPECT_EQ(lab.bridge->hub().closing(idle.connection)->code, 1008) << "no hello within 5 s";
+}
+
+/// A refusal quotes what was sent, cut short: never within a character.
+TEST_F(Bridge, WhatIsQuotedOfLongNamesIsTextStill) {
+  const std::string name = std::string(39, 'a') + "é";
+  const auto request = [&](std::int64_t id) {
+    return R"({"id":)" + std::to_string(id) + R"(,"request":")" + name + R"(","body":{}})";
+  };
+  const auto greeting = [&](const std::string& body) {
+    return R"({"id":1,"request":"hello","body":{"version":"hmd.v1","device":"test",)" + body + "}}";
+  };
+  for (const std::string& text :
+       {request(1), R"({"notice":")" + name + R"(","body":{}})", greeting("\"" + name + "\":1")}) {
+    Client stranger(lab, {"203.0.113.9", false});
+    lab.bridge->hub().text(stranger.connection, text, lab.bus->now());
+    stranger.read();
+    EXPECT_TRUE(lab.bridge->hub().closing(stranger.connection)) << text;
+  }
+  EXPECT_CODE(ana.hello(), "OK");
+  EXPECT_CODE(ana.ask_text(2, request(2)), "BAD_MESSAGE");
+}
+
+/// What was emptied while its connection was dying it never heard; here it is forgotten meanwhile.
+TEST_F(Bridge, WhoMissedThatABlockWasEmptiedBeginsAnew) {
+  const Json first = ana.hello()["answer"];
+  place_robot();
+  const Shape far = box(20, 20, 0.2, 20.4, 20.4, 0.6);
+  EXPECT_CODE(ana.ask(add(far)), "OK");
+  EXPECT_CODE(ana.ask(ViewRequest{Layer::kMap, {}, Frame::kMap, {0, 0, 0}, {1000}, {}}), "OK");
+  ana.note(CreditNotice{10'000'000});
+  lab.run(0.5);
+  ana.read();
+  const Json complete = ana.events["complete"];
+  EXPECT_CODE(ana.ask(EditRequest{EditOp::kDelete, Frame::kMap, far, {}, {}}), "OK");
+  lab.run(0.5);
+  EXPECT_CODE(ana.ask(add(box(1, 1, 0.2, 1.5, 1.5, 0.5))), "OK");
+  lab.run(25);  // it is swept up
+  ana.lose();
+  Client back(lab);
+  HelloRequest hello;
+  hello.version = kProtocol;
+  hello.name = "ana";
+  hello.resume = Resume{first["session"], complete["epoch"], complete["revision"]};
+  ASSERT_TRUE(back.ask_text(50, request_text(50, hello))["answer"]["resumed"].get<bool>());
+  EXPECT_EQ(back.events["epoch"]["stream"], 0) << "it is to drop what it has";
 }
 
 TEST_F(Bridge, ALostSessionGoesOnAndNothingIsDoneTwice) {

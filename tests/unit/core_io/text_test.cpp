@@ -50,6 +50,17 @@ TEST(Text, LimitsAreInBytes) {
   EXPECT_FALSE(is_request_id(""));
 }
 
+TEST(Text, IsCutBetweenCharacters) {
+  EXPECT_EQ(cut_to("abc", 3), "abc");
+  EXPECT_EQ(cut_to("abc", 2), "ab");
+  EXPECT_EQ(cut_to("aé", 2), "a");
+  EXPECT_EQ(cut_to("aé", 3), "aé");
+  EXPECT_EQ(cut_to("é", 1), "");
+  EXPECT_EQ(cut_to("a\xF0\x9F\x98\x80z", 4), "a");
+  EXPECT_EQ(cut_to("a\xF0\x9F\x98\x80z", 5), "a\xF0\x9F\x98\x80");
+  EXPECT_EQ(cut_to("", 5), "");
+}
+
 TEST(Text, WhatIsNoUtf8IsNoText) {
   for (const char* broken : {"\xFF", "\xC0\xAF", "\xE2\x82", "\xED\xA0\x80", "\xF5\x80\x80\x80"}) {
     EXPECT_FALSE(is_utf8(broken));

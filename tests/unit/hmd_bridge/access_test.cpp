@@ -58,6 +58,20 @@ TEST(Gate, ANetworkTakesSoManyBytesAndWaits) {
   EXPECT_TRUE(gate.may_take("2001:db8::2", kModel, kNow + 5'000'000));
 }
 
+TEST(Gate, RequestsAndLinesOfTheLogAreBoundedByNetwork) {
+  Gate gate([] { return std::string("secret"); });
+  int asked = 0, noted = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const std::string address = "2001:db8:0:1::" + std::to_string(i % 100);  // one network has them all
+    asked += gate.may_ask(address, kNow) ? 1 : 0;
+    noted += gate.may_be_noted(address, kNow) ? 1 : 0;
+  }
+  EXPECT_EQ(asked, 1000);
+  EXPECT_EQ(noted, 100);
+  EXPECT_TRUE(gate.may_ask("2001:db8:0:2::1", kNow)) << "others go on";
+  EXPECT_TRUE(gate.may_ask("2001:db8:0:1::1", kNow + 1'000'000));
+}
+
 TEST(Gate, AnAddressThatTriesTooOftenWaits) {
   Gate gate(random_secret);
   int tries = 0;
@@ -107,7 +121,10 @@ TEST(TokenStore, TokensAreFoundByThemselvesOnlyAndNeverWritten) {
     const std::string bytes((std::istreambuf_iterator<char>(in)), {});
     EXPECT_EQ(bytes.find(*token), std::string::npos) << file.path();
   }
+  EXPECT_EQ((**store.named("ana")).role, Role::kRobot);
+  EXPECT_FALSE(*store.named("bert"));
   EXPECT_TRUE(store.remove("ana"));
+  EXPECT_FALSE(*store.named("ana"));
   EXPECT_EQ(store.remove("ana").error().code, concord::Code::kNotFound);
   EXPECT_FALSE(*store.find(*token));
 }

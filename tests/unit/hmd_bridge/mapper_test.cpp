@@ -53,6 +53,22 @@ TEST(RoomMapper, AVoxelExistsAfterTwoLooksAndGoesWhenItsMeshIsGone) {
   EXPECT_EQ(looks, 5) << "64 to 59 %";
 }
 
+TEST(RoomMapper, ASequenceThatBeginsAnewIsTheWholeRoom) {
+  RoomMapper mapper(0.05);
+  const auto wall = quad(0, 0.5F, 0.01F), chair = quad(1, 0.2F, 0.51F);
+  EXPECT_EQ(mapper.take(look_at({wall}), 1).error().code, concord::Code::kBadFrame) << "a part of it, may be";
+  for (int look = 0; look < 10; ++look) ASSERT_TRUE(mapper.take(look_at({wall, chair}), look));
+  const std::int64_t both = mapper.occupied();
+  mapper.end_sequence();
+  EXPECT_FALSE(mapper.take(look_at({wall}), 7));
+  ASSERT_TRUE(mapper.take(look_at({wall}), 0));
+  EXPECT_EQ(mapper.occupied(), both) << "what they made stays at first";
+  for (int look = 1; look < 60; ++look) ASSERT_TRUE(mapper.take(look_at({}), look));
+  RoomMapper alone(0.05);
+  for (int look = 0; look < 10; ++look) ASSERT_TRUE(alone.take(look_at({wall}), look));
+  EXPECT_EQ(mapper.occupied(), alone.occupied()) << "the chair was carried away meanwhile";
+}
+
 TEST(RoomMapper, WhatALookCostsIsBoundedHoweverOftenATriangleIsRepeated) {
   MeshPart same = quad(1, 1.0F, 0.01F);
   for (int i = 0; i < 400; ++i) same.triangles.push_back({0, 1, 2});
@@ -104,11 +120,11 @@ TEST(RoomMapper, WhatIsBeyondReachIsNotJudged) {
 
 TEST(RoomMapper, WhatIsRefusedChangesNothing) {
   RoomMapper mapper(0.05);
-  ASSERT_TRUE(mapper.take(look_at({quad(1, 0.5F, 0.01F)}), 5));
-  EXPECT_EQ(mapper.take(look_at({}), 5).error().code, Code::kStale);
+  ASSERT_TRUE(mapper.take(look_at({quad(1, 0.5F, 0.01F)}), 0));
+  EXPECT_EQ(mapper.take(look_at({}), 0).error().code, Code::kStale);
   EXPECT_EQ(mapper.take(look_at({quad(2, 900.0F, 0)}), 6).error().code, Code::kTooLarge);
   RoomMapper fine(0.005);
-  EXPECT_EQ(fine.take(look_at({quad(2, 900.0F, 0)}), 6).error().code, Code::kOutOfBounds);
+  EXPECT_EQ(fine.take(look_at({quad(2, 900.0F, 0)}), 0).error().code, Code::kOutOfBounds);
   ASSERT_TRUE(mapper.take(look_at({}), 6)) << "the sequence did not go on";
   EXPECT_GE(mapper.occupied(), 400);
 }

@@ -1,9 +1,10 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { checkStruct, type ConflictRegion, type Operation, type Path, type Requests } from "../../../hmd_bridge/web/generated/messages";
+import { checkStruct, type ConflictRegion, type Operation, type Path, type Requests, type Volume } from "../../../hmd_bridge/web/generated/messages";
 import { composed, distance, fromXr, fromYaw, inverse, kIdentity, levelled, poseFromXr, rotated, toXr, transformed, unit, yawOf, type Vec3 } from "../../../hmd_bridge/web/src/base/vec";
 import type { Store } from "../../../hmd_bridge/web/src/base/kept";
 import { News } from "../../../hmd_bridge/web/src/base/news";
+import { AlignSession } from "../../../hmd_bridge/web/src/edit/align_session";
 import { conflictWords, ConflictTour, cornersOf } from "../../../hmd_bridge/web/src/edit/conflict_tour";
 import { Editor } from "../../../hmd_bridge/web/src/edit/editor";
 import { Obstacles } from "../../../hmd_bridge/web/src/edit/obstacles";
@@ -184,12 +185,42 @@ test("what waits in a scene is taken back before anything that was sent", async 
   const editor = new Editor(ask, news, draft);
   editor.did("sent");
   await draft.get([0, 0, 0], 1);
-  draft.addEdit({ op: "add", shape: { kind: "box", min: [0, 0, 0], max: [1, 1, 1] } });
+  const volume: Volume = { kind: "box", min: [0, 0, 0], max: [1, 1, 1] };
+  draft.addEdit({ op: "add", shape: volume });
+  draft.addZone({ name: "dock", zone_kind: "no_go", volume });
+  await editor.undo();
+  assert.deepEqual([draft.open.value!.edits.length, draft.open.value!.zones.length], [1, 0], "the last goes first");
   await editor.undo();
   assert.deepEqual(draft.open.value!.edits, []);
   assert.deepEqual(asked, ["scene_get"]);
   await editor.undo();
   assert.deepEqual(asked, ["scene_get", "undo"]);
+});
+
+test("of a scene that is stopped half-way the rest waits, with what was done as its base and undoable", async (t) => {
+  t.mock.method(globalThis, "setInterval", () => 0);
+  const sent: Requests["scene_send"][] = [];
+  const ask = ((name: string, body: Requests["scene_send"]) => {
+    if (name === "scene_get") return Promise.resolve({ revision: 7, voxels: { boxes: [] }, zones: [] });
+    sent.push(body);
+    if (sent.length > 1) return Promise.resolve({ revision: 10, edits: ["e2"], zones: 1 });
+    return Promise.resolve({ revision: 8, edits: ["e1"], zones: 0, stopped: { code: "LOCKED", message: "Ana works there.", retry: true } });
+  }) as unknown as Ask;
+  const news = new News();
+  const draft = new SceneDraft(ask, news, store());
+  const editor = new Editor(ask, news, draft);
+  await draft.get([0, 0, 0], 1);
+  for (const x of [0, 5]) draft.addEdit({ op: "add", shape: { kind: "box", min: [x, 0, 0], max: [x + 1, 1, 1] } });
+  draft.addZone({ name: "dock", zone_kind: "no_go", volume: { kind: "box", min: [0, 0, 0], max: [1, 1, 1] } });
+  await draft.send();
+  assert.match(news.latest.value!.text, /Ana works there/);
+  assert.deepEqual(editor.undoable.value, ["e1"]);
+  await draft.send();
+  assert.equal(draft.open.value, null);
+  assert.equal(sent[1]!.base_revision, 8);
+  assert.deepEqual([sent[1]!.edits.length, sent[1]!.zones.length], [1, 1]);
+  assert.deepEqual(sent[1]!.edits[0]!.shape, { kind: "box", min: [5, 0, 0], max: [6, 1, 1] });
+  assert.deepEqual(editor.undoable.value, ["e1", "e2"]);
 });
 
 test("what waits in a scene is there after a reload; what another version of the page wrote is not taken", async () => {
@@ -201,7 +232,7 @@ test("what waits in a scene is there after a reload; what another version of the
   first.addEdit({ op: "add", shape: { kind: "box", min: [0, 0, 0], max: [1, 1, 1] } });
   assert.deepEqual(draft().open.value, first.open.value);
   assert.equal(draft().open.value!.edits.length, 1);
-  for (const strange of ["{", "[]", "3", '{"revision":7,"voxelBoxes":0,"edits":[{"op":"paint"}],"zones":[]}', '{"revision":7.5,"voxelBoxes":0,"edits":[],"zones":[]}']) {
+  for (const strange of ["{", "[]", "3", '{"revision":7,"voxelBoxes":0,"edits":[{"op":"paint"}],"zones":[],"steps":["edit"]}', '{"revision":7,"voxelBoxes":0,"edits":[],"zones":[],"steps":["edit"]}', '{"revision":7.5,"voxelBoxes":0,"edits":[],"zones":[],"steps":[]}']) {
     memory.setItem("concord-scene", strange);
     assert.equal(draft().open.value, null, strange);
   }
@@ -246,4 +277,42 @@ test("history says of an undo what it took back, as far as it is known", () => {
   assert.equal(operationWords(undone, new Map([[added.operation, added]])), "Ben undid: Ana added 640 voxels");
   assert.equal(operationWords(undone, new Map()), "Ben undid Ana-1");
   assert.equal(operationWords(by("", "zone_add", "stairs"), new Map()), "somebody added zone stairs");
+});
+
+test("a device without a place in the map shows no point of it; one that loses it answers no more", async (t) => {
+  t.mock.method(globalThis, "setInterval", () => 0);
+  const ask = (() => Promise.resolve({})) as unknown as Ask;
+  const news = new News();
+  const editor = new Editor(ask, news, new SceneDraft(ask, news, store()));
+  editor.blocked.set("Place your room first.");
+  assert.equal(await editor.askPoint("Click where it shall go."), null);
+  assert.match(news.latest.value!.text, /Place your room first/);
+  const seen = editor.askPoint("Click where you see it.", true);
+  editor.point([1, 2, 3]);
+  assert.deepEqual(await seen, [1, 2, 3]);
+  editor.blocked.set(null);
+  const goal = editor.askPoint("Click where it shall go.");
+  const robot = editor.question.value;
+  assert(robot && !robot.unplaced);
+  editor.blocked.set("Your room began anew.");
+  assert.equal(await goal, null);
+  assert.equal(editor.question.value, null);
+  assert.match(news.latest.value!.text, /began anew/);
+});
+
+test("an alignment that is cancelled while its fit is sought does not come back, and its offer is dropped", async () => {
+  const asked: string[] = [];
+  let answer: (offer: unknown) => void = () => {};
+  const ask = ((name: string) => {
+    asked.push(name);
+    return name === "align" ? new Promise((done) => (answer = done)) : Promise.resolve({});
+  }) as unknown as Ask;
+  const align = new AlignSession(ask, () => Promise.resolve({ kind: "points", request: 1, points: new Float32Array([0, 0, 0]) }), new News());
+  await align.begin("robot2", undefined);
+  const refined = align.refine(true);
+  align.cancel();
+  answer({ align: "al1", T_target_source: kIdentity, evidence: {}, message: "" });
+  await refined;
+  assert.equal(align.current.value, null);
+  assert.deepEqual(asked, ["align", "align_drop"]);
 });

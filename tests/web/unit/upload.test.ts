@@ -28,7 +28,7 @@ class Bench {
       return refusal ? Promise.reject(new RefusedError(refusal)) : Promise.resolve({ sequence, occupied: 7 });
     },
   };
-  readonly uploader = new RoomUploader(this.link as unknown as Link, this.news, () => this.scan.forget(), () => this.reset(), () => { ++this.pauses; return Promise.resolve(); });
+  readonly uploader = new RoomUploader(this.link as unknown as Link, this.news, this.scan, () => this.reset(), () => { ++this.pauses; return Promise.resolve(); });
   pauses = 0;
 
   frames = 0;

@@ -47,13 +47,21 @@ test("a look sends what changed, moved or went, z up, under lasting numbers", ()
   const moved = scan.look([mesh(a, 2), mesh(b, 1, { position: [0, 0, 2], rotation: [0, 0, 0, 1] })]);
   assert.deepEqual([...moved[0]!.vertices.slice(0, 3)], [0, -2, 1], "y up came in, z up goes out");
   assert.deepEqual(scan.look([mesh(b, 1, null)]).map(({ number, vertices }) => [number, vertices.length]), [[0, 0]], "gone; the other's place is not known now");
+  const sent = (): number[][] => scan.look([mesh(b, 1)]).map(({ number, vertices }) => [number, vertices.length]);
+  for (let time = 0; time < 2; ++time) {
+    scan.repeat();
+    assert.deepEqual(sent(), [[1, 9], [0, 0]], "under its number, and what was gone is gone");
+    assert.deepEqual(sent(), []);
+  }
   scan.forget();
-  assert.deepEqual(scan.look([mesh(b, 1)]).map(({ number }) => number), [0]);
+  assert.deepEqual(sent(), [[0, 9]]);
 });
 
 test("a large room goes in several frames, nothing new in an empty one", () => {
   const big = { number: 1, vertices: new Float32Array(600_000), triangles: new Uint32Array(3) };
   assert.deepEqual(payloads(kIdentity, [big, { ...big, number: 2 }, { ...big, number: 3 }]).map(({ meshes }) => meshes), [1, 1, 1]);
+  const many = Array.from({ length: 2500 }, (_, number) => ({ number, vertices: new Float32Array(), triangles: new Uint32Array() }));
+  assert.deepEqual(payloads(kIdentity, many).map(({ meshes }) => meshes), [1024, 1024, 452]);
   assert.deepEqual(payloads(kIdentity, []).map(({ meshes, payload }) => [meshes, payload.length]), [[0, 28]]);
   assert.deepEqual(fanTriangles(4), [0, 1, 2, 0, 2, 3]);
   assert.deepEqual(fanTriangles(2), []);

@@ -69,9 +69,14 @@ export class AlignSession {
   async refine(anywhere = false): Promise<void> {
     const now = this.current.value;
     if (!now) return;
-    this.current.set({ ...now, busy: true });
+    const asking = { ...now, busy: true };
+    this.current.set(asking);
     const body = { source: now.source, ...(now.target === undefined ? {} : { target: now.target }), ...(anywhere ? {} : { T_target_source: now.guess }) };
     const offer = await this.news.tell(this.ask("align", body), ({ message }) => message || "A fit was found. Look whether it is right, then accept it.");
+    if (this.current.value !== asking) {
+      if (offer) this.drop(offer.align); // it was cancelled meanwhile
+      return;
+    }
     this.current.set(offer ? { ...now, guess: offer.T_target_source, offer, busy: false } : { ...now, busy: false });
   }
 

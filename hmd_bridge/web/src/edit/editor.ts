@@ -15,8 +15,8 @@ export class Editor {
   readonly selection = new Signal<Selection | null>(null);
   /** Why nothing can be changed now; null if it can. */
   readonly blocked = new Signal<string | null>(null);
-  /** Somebody waits for one point of the map. */
-  readonly question = new Signal<{ hint: string; answer: (p: Vec3 | null) => void } | null>(null);
+  /** Somebody waits for one point: of the map, or of the room about a device that has no place in the map. */
+  readonly question = new Signal<{ hint: string; unplaced: boolean; answer: (p: Vec3 | null) => void } | null>(null);
   readonly height = new Signal<number | null>(2);
   readonly thickness = new Signal(0.05);
   readonly undoable = new Signal<readonly string[]>([]);
@@ -29,7 +29,16 @@ export class Editor {
     private readonly draft: SceneDraft,
   ) {
     this.selection.onChange(() => this.lease());
+    this.draft.onSent = (edit) => this.did(edit);
     setInterval(() => this.lease(), kLeaseMs);
+    // Where this device lost its place, what it shows is another point of the map than the person means.
+    this.blocked.onChange((why) => {
+      const open = this.question.value;
+      if (why === null || !open || open.unplaced) return;
+      this.question.set(null);
+      open.answer(null);
+      this.news.failed(why);
+    });
   }
 
   begin(tool: Tool): void {
@@ -74,10 +83,11 @@ export class Editor {
     if (this.selection.value) this.selection.set({ ...this.selection.value, thickness });
   }
 
-  /** A point of the map that the person shows; null if they would rather not. */
-  askPoint(hint: string): Promise<Vec3 | null> {
+  /** A point of the map that the person shows; null if they would rather not, or cannot. @param unplaced whether it is asked where this device has no place in the map, too */
+  askPoint(hint: string, unplaced = false): Promise<Vec3 | null> {
     this.cancel();
-    return new Promise((answer) => this.question.set({ hint, answer }));
+    if (!unplaced && !this.permitted()) return Promise.resolve(null);
+    return new Promise((answer) => this.question.set({ hint, unplaced, answer }));
   }
 
   /** @param move metres, for op move */
@@ -112,6 +122,11 @@ export class Editor {
   did(undo: string): void {
     this.undoable.set([...this.undoable.value, undo]);
     this.redoable.set([]);
+  }
+
+  /** Whether this person did something that is not undone yet. */
+  get canUndo(): boolean {
+    return this.undoable.value.length > 0 || (this.draft.open.value?.steps.length ?? 0) > 0;
   }
 
   async undo(): Promise<void> {

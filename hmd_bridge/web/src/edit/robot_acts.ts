@@ -37,8 +37,8 @@ export async function send(app: App, robot: string): Promise<void> {
 
 /** The person shows where they see a robot; from that their device finds where it is. @param toOwn from the map to the device's own frame */
 export async function refer(app: App, robot: string, toOwn: (p: Vec3) => Vec3): Promise<void> {
-  const at = await app.editor.askPoint(`Click where you see ${robot}.`);
-  const ahead = at && (await app.editor.askPoint(`Click a place straight ahead of ${robot}.`));
+  const at = await app.editor.askPoint(`Click where you see ${robot}.`, true);
+  const ahead = at && (await app.editor.askPoint(`Click a place straight ahead of ${robot}.`, true));
   if (!ahead) return;
   const [from, to] = [toOwn(at), toOwn(ahead)];
   await app.align.refer(robot, { position: from, rotation: fromYaw(Math.atan2(to[1] - from[1], to[0] - from[0])) });

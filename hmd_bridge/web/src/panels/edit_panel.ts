@@ -40,7 +40,8 @@ function changeSection(app: App): HTMLElement {
   const shift = ["x", "y", "z"].map((axis) => el("input", { type: "number", step: 0.05, value: 0, class: "short", "aria-label": `Move along ${axis}, metres` }));
   const undo = button("Undo", () => void editor.undo(), { title: "Ctrl+Z" });
   const redo = button("Redo", () => void editor.redo(), { title: "Ctrl+Y" });
-  editor.undoable.watch((edits) => (undo.disabled = edits.length === 0));
+  for (const each of [editor.undoable, app.draft.open]) each.onChange(() => (undo.disabled = !editor.canUndo));
+  undo.disabled = !editor.canUndo;
   editor.redoable.watch((edits) => (redo.disabled = edits.length === 0));
   const blocked = live((redraw) => editor.blocked.watch(redraw), () => (editor.blocked.value === null ? [] : [editor.blocked.value]), { class: "warning" });
   return section("Change voxels", blocked,

@@ -49,7 +49,7 @@ export class Immersive {
     readonly own: OwnFrame,
   ) {
     const { stage } = app;
-    this.uploader = new RoomUploader(app.link, app.news, () => this.room.forget(), () => own.reset());
+    this.uploader = new RoomUploader(app.link, app.news, { forget: () => this.room.forget(), repeat: () => this.room.repeat() }, () => own.reset());
     this.room = new RoomView(this.uploader);
     this.menu = new Menu(app, own, this.room);
     this.table = new MiniTable(app.align, (table) => this.putAhead(table, 0.75, -0.35));

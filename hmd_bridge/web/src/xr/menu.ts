@@ -143,7 +143,7 @@ export class Menu {
       rows: [
         kTools.map(({ tool, title }) => ({ id: `tool ${tool}`, title, pressed: tool === selected })),
         [{ id: "do done", title: "Done" }, { id: "do back", title: "Back" }, { id: "do cancel", title: "Cancel" }, { id: "do move", title: "Move…", disabled: off }],
-        [{ id: "do add", title: "Add", main: true, disabled: off }, { id: "do delete", title: "Delete", main: true, disabled: off }, { id: "do undo", title: "Undo", disabled: editor.undoable.value.length === 0 }, { id: "do redo", title: "Redo", disabled: editor.redoable.value.length === 0 }],
+        [{ id: "do add", title: "Add", main: true, disabled: off }, { id: "do delete", title: "Delete", main: true, disabled: off }, { id: "do undo", title: "Undo", disabled: !editor.canUndo }, { id: "do redo", title: "Redo", disabled: editor.redoable.value.length === 0 }],
         [{ id: "do label", title: "Label…", disabled: off }, { id: "do touch", title: "Name a thing…", share: 1.4, disabled: off }, { id: "do zone", title: "Keep out…", disabled: off }, { id: "do obstacle", title: "Obstacle", disabled: off }],
         [kBack, { id: "do atHand", title: this.atHand.value ? "Points at my hand" : "Points where I aim", share: 2 }],
       ],
@@ -151,11 +151,12 @@ export class Menu {
   }
 
   private robots(): Omit<PanelPage, "words"> {
+    const unplaced = this.app.editor.blocked.value !== null;
     const rows = this.app.world.robots().slice(0, kMostRows).map(({ agent }) => [
       { id: `robot path/${agent}`, title: agent, share: 1.3, pressed: this.app.world.paths.value.has(agent) },
-      { id: `robot what/${agent}`, title: "Way to…", disabled: !this.app.mayEdit },
-      { id: `robot send/${agent}`, title: "Send to…", disabled: !this.app.mayDrive },
-      { id: `robot here/${agent}`, title: "Is here…", disabled: !this.app.mayDrive },
+      { id: `robot what/${agent}`, title: "Way to…", disabled: unplaced || !this.app.mayEdit },
+      { id: `robot send/${agent}`, title: "Send to…", disabled: unplaced || !this.app.mayDrive },
+      { id: `robot here/${agent}`, title: "Is here…", disabled: unplaced || !this.app.mayDrive },
     ]);
     return { title: "Robots: press a name for its path", rows: [...rows, [kBack, { id: "do removeObstacle", title: "Remove last obstacle", share: 2, disabled: this.app.obstacles.own.value.length === 0 }]] };
   }

@@ -25,6 +25,7 @@ const kStill = 0.005;
 
 export class RoomScan {
   private readonly known = new Map<object, Known>();
+  private gone: number[] = [];
   private numbers = 0;
 
   /** The meshes that changed, in the own frame, and those that are gone (without vertices). */
@@ -46,13 +47,22 @@ export class RoomScan {
       this.known.delete(key);
       out.push({ number, vertices: new Float32Array(), triangles: new Uint32Array() });
     }
+    for (const number of this.gone.splice(0)) out.push({ number, vertices: new Float32Array(), triangles: new Uint32Array() });
     return out;
   }
 
-  /** All meshes are new again: the own frame is another, or the server lost what it had. */
+  /** All meshes are new: the own frame is another, or the server begins anew with what it is sent next. */
   forget(): void {
     this.known.clear();
+    this.gone = [];
     this.numbers = 0;
+  }
+
+  /** A look may not have arrived: all meshes are sent again under the numbers that they have, and what is gone is said to be gone again. */
+  repeat(): void {
+    const present = new Set([...this.known.values()].map(({ number }) => number));
+    this.gone = Array.from({ length: this.numbers }, (_, number) => number).filter((number) => !present.has(number));
+    for (const each of this.known.values()) each.changed = NaN;
   }
 }
 
@@ -70,6 +80,7 @@ export function sensorOf({ position, rotation }: Pose): SensorPose {
 }
 
 const kFrameBytes = 3_000_000;
+const kFrameMeshes = 1024;
 const bytesOf = ({ vertices, triangles }: RoomMesh): number => 12 + 4 * (vertices.length + triangles.length);
 
 /** Splits what has changed into frames that a server takes; one empty frame if nothing has. */
@@ -77,7 +88,7 @@ export function payloads(sensor: Pose, meshes: readonly RoomMesh[]): { meshes: n
   const groups: RoomMesh[][] = [[]];
   let bytes = 0;
   for (const mesh of meshes) {
-    if (bytes > 0 && bytes + bytesOf(mesh) > kFrameBytes) {
+    if (bytes > 0 && (bytes + bytesOf(mesh) > kFrameBytes || groups.at(-1)!.length >= kFrameMeshes)) {
       groups.push([]);
       bytes = 0;
     }

@@ -5,7 +5,7 @@ import { Signal } from "../base/signal";
 import { RefusedError } from "../link/failures";
 import type { Link } from "../link/link";
 import { meshFrame, packPayload, type PackedPayload, type RoomMesh } from "../protocol/frames";
-import { payloads } from "./room_scan";
+import { payloads, type RoomScan } from "./room_scan";
 
 const kLookMs = 500;
 /** A large room takes more looks at once than the server does: so often is one offered again. */
@@ -23,8 +23,8 @@ export class RoomUploader {
   constructor(
     private readonly link: Link,
     private readonly news: News,
-    /** Called when what was sent before counts no more: all meshes are to be sent again. */
-    private readonly anew: () => void,
+    /** Which of the room's meshes are new. */
+    private readonly scan: Pick<RoomScan, "forget" | "repeat">,
     /** Called when the server takes nothing more in this frame: another is to begin. */
     private readonly reframe: () => void,
     private readonly pause = (milliseconds: number) => new Promise<void>((done) => setTimeout(done, milliseconds)),
@@ -81,14 +81,14 @@ export class RoomUploader {
     this.sequence = 0;
     ++this.restarts;
     this.occupied.set(0);
-    this.anew();
+    this.scan.forget();
   }
 
   private failed(error: unknown): void {
     const code = error instanceof RefusedError ? error.refusal.code : null;
     if (code === "DUP_SEQ") return; // it came before: the next number is a new one
     if (code === "BAD_FRAME") this.reframe();
-    else this.anew();
+    else this.scan.repeat();
     // While tracking is lost, or the connection, the person is told elsewhere.
     if (code !== null && code !== "TRACKING_LOST") this.news.failed((error as RefusedError).message);
   }

@@ -21,7 +21,12 @@ export class RoomView {
     this.scanning.watch((scanning) => (this.group.visible = scanning));
   }
 
-  /** All is sent again at the next look. */
+  /** All is sent again at the next look, under the same numbers. */
+  repeat(): void {
+    this.scan.repeat();
+  }
+
+  /** All is new at the next look. */
   forget(): void {
     this.scan.forget();
     for (const mesh of this.meshes.values()) discard(mesh);
