@@ -24,6 +24,12 @@ std::string words(InstanceId of) {
   return "instance " + std::to_string(of.instance) + " of class " + std::to_string(of.label);
 }
 
+/// The number after the highest that was given.
+Result<std::uint32_t> next(std::uint32_t highest) {
+  if (highest < kMostGiven) return highest + 1;
+  return refuse(Code::kTooLarge, "the numbers have come to their end: a map was loaded that has the last one");
+}
+
 }  // namespace
 
 Result<Labels::What> Labels::check(const LabelRequest& request, const std::vector<VoxelIndex>& voxels) const {
@@ -53,7 +59,8 @@ Result<void> Labels::check_instance(InstanceId of) const {
   const auto it = classes_.find(of.label);
   if (it == classes_.end())
     return refuse(Code::kNotFound, "no class " + std::to_string(of.label) + "; see: concord labels");
-  if (of.instance > it->second.instances) return refuse(Code::kNotFound, "no " + words(of) + "; see: concord labels");
+  if (of.instance != 0 && !it->second.given.contains(of.instance))
+    return refuse(Code::kNotFound, "no " + words(of) + "; see: concord labels");
   return {};
 }
 
@@ -75,7 +82,7 @@ Result<void> Labels::check_room(InstanceId of) const {
   if (known == classes_.end() && classes_.size() >= kMaxClasses) {
     return refuse(Code::kTooLarge, "there are too many classes already");
   }
-  const bool is_new = known == classes_.end() || of.instance > known->second.instances;
+  const bool is_new = known == classes_.end() || !known->second.given.contains(of.instance);
   if (is_new && instances_ >= kMaxInstances) return refuse(Code::kTooLarge, "no more instances can be told apart");
   return {};
 }
@@ -94,12 +101,19 @@ Result<Labels::What> Labels::check_claim(const LabelRequest& request, const std:
 Result<Claim> Labels::numbered(const LabelRequest& request) const {
   Claim claim;
   const auto known = class_called(request.name);
-  claim.of.label = known ? *known : classes_.empty() ? 1 : classes_.rbegin()->first + 1;
-  if (!known) claim.class_name = request.name;
-  claim.of.instance = request.of.instance;
-  const std::uint32_t given = known ? classes_.at(*known).instances : 0;
-  if (claim.of.instance == 0) claim.of.instance = given + 1;
-  if (request.of.instance > given) return refuse(Code::kNotFound, "no " + words(request.of) + "; see: concord labels");
+  if (known) {
+    claim.of.label = *known;
+    if (const auto there = check_instance({*known, request.of.instance}); !there) return tl::unexpected(there.error());
+  } else {
+    if (request.of.instance != 0) return refuse(Code::kNotFound, "no class " + request.name + "; see: concord labels");
+    const auto label = next(classes_.empty() ? 0 : classes_.rbegin()->first);
+    if (!label) return tl::unexpected(label.error());
+    claim.of.label = *label;
+    claim.class_name = request.name;
+  }
+  const auto fresh = next(known ? classes_.at(*known).highest() : 0);
+  if (request.of.instance == 0 && !fresh) return tl::unexpected(fresh.error());
+  claim.of.instance = request.of.instance != 0 ? request.of.instance : *fresh;
   return claim;
 }
 
@@ -134,7 +148,9 @@ Result<Labels::What> Labels::check_reassign(const LabelRequest& request) const {
   if (const auto there = check_instance(to); !there) return tl::unexpected(there.error());
   if (to.instance == 0) {
     if (instances_ >= kMaxInstances) return refuse(Code::kTooLarge, "no more instances can be told apart");
-    to.instance = classes_.at(*label).instances + 1;
+    const auto fresh = next(classes_.at(*label).highest());
+    if (!fresh) return tl::unexpected(fresh.error());
+    to.instance = *fresh;
   }
   if (to == request.of) return refuse(Code::kConflict, "it is that instance already");
   return Reassign{request.of, to};

@@ -13,7 +13,7 @@ class Numbers {
   Numbers(const Labels& theirs, const Labels& ours) : theirs_(theirs) {
     for (const auto& [id, of_class] : ours.classes()) {
       by_name_[of_class.name] = id;
-      given_[id] = of_class.instances;
+      given_[id] = of_class.highest();
     }
   }
 

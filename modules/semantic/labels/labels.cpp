@@ -134,9 +134,7 @@ std::optional<Labels::Waiting> Labels::waiting_for(const std::string& edit_id) c
 }
 
 void Labels::give(InstanceId of) {
-  Class& of_class = classes_[of.label];
-  if (of.instance > of_class.instances) ++instances_;
-  of_class.instances = std::max(of_class.instances, of.instance);
+  if (classes_[of.label].given.insert(of.instance).second) ++instances_;
 }
 
 /// All that may change when something happens to an instance, or to a class (instance 0).

@@ -116,7 +116,8 @@ class Labels {
 
   struct Class {
     std::string name;
-    std::uint32_t instances = 0;  ///< ever given
+    std::set<std::uint32_t> given;  ///< numbers of instances, ever
+    [[nodiscard]] std::uint32_t highest() const { return given.empty() ? 0 : *given.rbegin(); }
   };
   [[nodiscard]] const std::map<ClassId, Class>& classes() const { return classes_; }
   [[nodiscard]] std::optional<ClassId> class_called(const std::string& name) const;

@@ -152,6 +152,33 @@ TEST(Labels, RestoredNumbersStayAndTheNextOnesFollow) {
   EXPECT_EQ(world.ask(request, row(0, 1)).error().code, Code::kConflict);
 }
 
+/// However high one number is, those below it that nobody was given are nobody's, and all that are given are counted.
+TEST(Labels, NumbersThatWereNeverGivenAreNone) {
+  World world;
+  LabelRequest restore;
+  restore.op = Op::kRestore;
+  restore.name = "chair";
+  restore.of = {1, 1U << 30};
+  ASSERT_TRUE(world.ask(restore, row(0, 1)));
+  LabelRequest more;
+  more.op = Op::kLabel;
+  more.name = "chair";
+  more.of = {1, 5};
+  EXPECT_EQ(world.ask(more, row(2, 3)).error().code, Code::kNotFound);
+  LabelRequest reassign;
+  reassign.op = Op::kReassign;
+  reassign.of = {1, 1U << 30};
+  reassign.name = "chair";
+  reassign.to_instance = 5;
+  EXPECT_EQ(world.ask(reassign, {}).error().code, Code::kNotFound);
+  for (std::uint32_t number = 1; number < kMaxInstances; ++number) {
+    restore.of.instance = number;
+    ASSERT_TRUE(world.ask(restore, row(0, 1))) << number;
+  }
+  restore.of.instance = kMaxInstances;
+  EXPECT_EQ(world.ask(restore, row(0, 1)).error().code, Code::kTooLarge);
+}
+
 TEST(LabelView, ALabelShowsWhereItsVoxelsAreOccupied) {
   World world;
   BrickMap map;
