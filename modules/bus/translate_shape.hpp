@@ -10,8 +10,6 @@
 
 namespace concord::wire {
 
-inline constexpr std::int64_t kMaxSelectionBoxes = 65'536;
-
 /// What shape_t may hold, where it selects up to so many boxes of voxels and has up to so many corners.
 template <std::int64_t kMostBoxes, std::int64_t kMostPoints>
 inline constexpr WireField kShapeOf[] = {

@@ -9,9 +9,6 @@
 namespace concord {
 namespace {
 
-/// Of one request: lcmtypes/shape_t.lcm.
-constexpr std::size_t kMaxBoxes = 65'536;
-
 /// One voxel: three whole numbers and nothing else. Absent where the line holds anything else.
 std::optional<VoxelIndex> parse_voxel(const std::string& line) {
   std::istringstream in(line);
@@ -45,12 +42,8 @@ Result<VoxelList> read_voxels(const std::string& file, double resolution) {
   if (in.bad()) return refuse(Code::kIo, "cannot read " + file + " to its end");
   const auto voxels = expand(single, kMaxEditVoxels);
   if (!voxels) return tl::unexpected(voxels.error());
-  VoxelList list{resolution, to_boxes(*voxels)};
-  if (list.boxes.size() > kMaxBoxes) {
-    return refuse(Code::kTooLarge, file + ": its voxels are too scattered for one edit (" +
-                                       std::to_string(list.boxes.size()) + " boxes, at most " +
-                                       std::to_string(kMaxBoxes) + "); give it in parts");
-  }
+  auto list = voxel_list(*voxels, resolution);
+  if (!list) return refuse(list.error().code, file + ": " + list.error().message);
   return list;
 }
 

@@ -28,9 +28,11 @@ struct InstanceId {
 inline constexpr std::size_t kMaxClasses = 4096;
 inline constexpr std::size_t kMaxInstances = 65'000;              ///< ever
 inline constexpr std::int64_t kMaxLabelVoxels = 500'000;          ///< of one label, as of one edit
-inline constexpr std::int64_t kMaxAllLabelVoxels = 50'000'000;    ///< of labels that are not undone
+inline constexpr std::int64_t kMaxAllLabelVoxels = 50'000'000;    ///< of labels that are not undone, but for models
 inline constexpr std::int64_t kMaxLabelVoxelsEver = 100'000'000;  ///< of all
-inline constexpr std::size_t kMaxLabelCorrections = 1'000'000;    ///< ever, that people may make
+/// Of all labels ever, each counting its own: what memory they take. Voxels that stand apart take a brick each.
+inline constexpr std::int64_t kMaxLabelBricks = 4'000'000;
+inline constexpr std::size_t kMaxLabelCorrections = 1'000'000;  ///< ever, that people may make
 
 /// What a label lies on: the frame of an agent, with which it moves, or the map.
 struct LabelAnchor {

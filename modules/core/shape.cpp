@@ -256,4 +256,12 @@ Result<std::int64_t> footprint_count(const Volume& volume, const Transform& T_ma
   });
 }
 
+Result<VoxelList> voxel_list(std::span<const VoxelIndex> voxels, double resolution) {
+  VoxelList list{resolution, to_boxes(voxels)};
+  const auto many = static_cast<std::int64_t>(list.boxes.size());
+  if (many <= kMaxSelectionBoxes) return list;
+  return refuse(Code::kTooLarge, "its voxels are too scattered for one request (" + std::to_string(many) +
+                                     " boxes, at most " + std::to_string(kMaxSelectionBoxes) + ")");
+}
+
 }  // namespace concord

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <variant>
 #include <vector>
 
@@ -59,6 +60,11 @@ struct VoxelList {
   double resolution = 0;  ///< of that lattice, metres
   std::vector<VoxelBox> boxes;
 };
+
+inline constexpr std::int64_t kMaxSelectionBoxes = 65'536;  ///< in one request: lcmtypes/shape_t.lcm
+/// Sorted and unique voxels as a request has them. Refused (kTooLarge): so scattered that they are over
+/// kMaxSelectionBoxes boxes.
+[[nodiscard]] Result<VoxelList> voxel_list(std::span<const VoxelIndex> voxels, double resolution);
 
 using Shape = std::variant<VoxelList, Line, Area, Box, OrientedBox, Prism>;
 using Volume = std::variant<Box, OrientedBox, Prism>;

@@ -77,8 +77,8 @@ SemanticNode::SemanticNode(const NodeContext& context, std::launch how)
                     [this](const std::string& id, const std::string& author, std::uint64_t content, Labels::What what) {
                       return commit(id, author, content, std::move(what));
                     },
-                    [this](InstanceId of) { return view_.instance(of); }}),
-      detections_node_(context, {map_, layers_, assets_node_, store_, selection_}),
+                    store_, [this](InstanceId of) { return view_.instance(of); }}),
+      detections_node_(context, {map_, labels_, layers_, assets_node_, store_, selection_}),
       files_node_(context, {labels_, [this](const auto& visit) { return store_.for_each(visit); },
                             [this](const std::vector<LabelCorrection>& all) { return commit(all); }}),
       margins_node_(context, labels_, view_, [this] { return is_whole(); }) {
@@ -149,7 +149,7 @@ void SemanticNode::restore() {
 void SemanticNode::on_request(const LabelRequest& request) {
   const std::uint64_t content = content_without_time(request);
   if (repeat(request, content)) return;
-  if (request.op == LabelRequest::Op::kDelete) return on_delete(request);
+  if (request.op == LabelRequest::Op::kDelete) return on_delete(request, content);
   auto what = check(request);
   if (!what) return replies_.deny(kRequests, request.id, what.error());
   if (const auto done = commit(request.id, request.author, content, std::move(*what)); !done) {
@@ -172,7 +172,7 @@ Result<void> SemanticNode::commit(const std::vector<LabelCorrection>& correction
   for (const LabelCorrection& correction : corrections) labels_.apply(correction, touched);
   refresh(touched);
   label_stream_.send_now();
-  margins_node_.touch();  // a class may have another name
+  margins_node_.touch_names();
   has_new_slots_ = true;
   return {};
 }
@@ -228,29 +228,46 @@ bool SemanticNode::is_whole() {
 }
 
 /// One edit, whose answer is merge's: its id is the request's, so who asked hears it.
-void SemanticNode::on_delete(const LabelRequest& request) {
+void SemanticNode::on_delete(const LabelRequest& request, std::uint64_t content) {
   if (!labels_.classes().contains(request.of.label)) {
     return replies_.deny(kRequests, request.id,
                          {Code::kNotFound, "no class " + std::to_string(request.of.label) + "; see: concord labels"});
   }
   if (!is_whole()) return replies_.deny(kRequests, request.id, {Code::kBusy, kNotWhole});
-  const Operation* before = history_node_.find_deletion(request.id);
-  if (before != nullptr && before->author == request.author) {
-    return replies_.grant(request.id, before->revision, before->count, "deleted since it was asked before");
+  if (const auto done = send_deletion(request, content); !done) replies_.deny(kRequests, request.id, done.error());
+}
+
+Result<void> SemanticNode::send_deletion(const LabelRequest& request, std::uint64_t content) {
+  const auto is_repeat = store_.was_asked(request.id, content);
+  if (!is_repeat) return tl::unexpected(is_repeat.error());
+  if (const Operation* before = history_node_.find_deletion(request.id); before != nullptr) {
+    if (!*is_repeat) return refuse(Code::kExists, "an edit in the map has this id; ids must be unique");
+    replies_.grant(request.id, before->revision, before->count, "deleted since it was asked before");
+    return {};
   }
+  const auto edit = deletion_of(request);
+  if (!edit) return tl::unexpected(edit.error());
+  // Kept first: whoever asks again after a kill must mean the same.
+  if (const auto kept = *is_repeat ? Result<void>() : store_.put_deletion(request.id, content); !kept) return kept;
+  context_.bus.publish("in/edit", encode(*edit));
+  return {};
+}
+
+Result<EditRequest> SemanticNode::deletion_of(const LabelRequest& request) const {
   const std::vector<VoxelIndex> voxels = view_.voxels_of(request.of);
-  if (voxels.empty()) return replies_.deny(kRequests, request.id, {Code::kEmpty, "nothing of it shows in the map"});
+  if (voxels.empty()) return refuse(Code::kEmpty, "nothing of it shows in the map");
   if (static_cast<std::int64_t>(voxels.size()) > kMaxEditVoxels) {
-    return replies_.deny(kRequests, request.id,
-                         {Code::kTooLarge, "it has more voxels than one edit; delete its instances one by one"});
+    return refuse(Code::kTooLarge, "it has more voxels than one edit; delete its instances one by one");
   }
+  auto list = voxel_list(voxels, context_.site.resolution);
+  if (!list) return tl::unexpected(list.error());
   EditRequest edit;
   edit.id = request.id;
   edit.author = request.author;
   edit.op = EditRequest::Op::kDelete;
-  edit.shape = VoxelList{context_.site.resolution, to_boxes(voxels)};
+  edit.shape = std::move(*list);
   edit.utime = context_.bus.now();
-  context_.bus.publish("in/edit", encode(edit));
+  return edit;
 }
 
 void SemanticNode::on_query(const LabelQuery& query) {
@@ -275,7 +292,7 @@ void SemanticNode::refresh(const BrickSet& touched) {
     for (std::uint64_t bits = bricks; bits != 0; bits &= bits - 1) {
       const BrickIndex index = brick_at(tile, std::countr_zero(bits));
       if (!view_.refresh(index)) continue;
-      margins_node_.touch();
+      margins_node_.touch(index);
       if (begun_) label_stream_.touch(index);
     }
   }

@@ -36,7 +36,9 @@ class SemanticNode {
   void restore();
   void on_agents(const AgentList& list);
   void on_request(const LabelRequest& request);
-  void on_delete(const LabelRequest& request);
+  void on_delete(const LabelRequest& request, std::uint64_t content);
+  [[nodiscard]] Result<void> send_deletion(const LabelRequest& request, std::uint64_t content);
+  [[nodiscard]] Result<EditRequest> deletion_of(const LabelRequest& request) const;
   void on_query(const LabelQuery& query);
   [[nodiscard]] bool repeat(const LabelRequest& request, std::uint64_t content);
   [[nodiscard]] Result<Labels::What> check(const LabelRequest& request);

@@ -21,7 +21,9 @@ SemanticStore::SemanticStore(const std::filesystem::path& file, double resolutio
     : database_(file, kSemanticSchema),
       put_(database_.prepare("INSERT INTO corrections VALUES (?,?,?)")),
       place_(database_.prepare("INSERT OR REPLACE INTO placements VALUES (?,?,?)")),
-      spend_(database_.prepare("UPDATE thing_numbers SET spent = spent + ? RETURNING spent")) {
+      spend_(database_.prepare("UPDATE thing_numbers SET spent = spent + ? RETURNING spent")),
+      asked_(database_.prepare("SELECT content FROM deletions WHERE id = ?")),
+      delete_(database_.prepare("INSERT INTO deletions VALUES (?,?)")) {
   const double kept = kept_resolution(database_, resolution);
   if (std::abs(kept - resolution) <= 1e-9) return;
   throw ConfigError("the labels in this state folder are for " + std::to_string(kept) +
@@ -55,6 +57,22 @@ Result<std::int64_t> SemanticStore::take_thing_numbers(std::int64_t count) {
   const auto done = spend_.for_each_row([&] { spent = spend_.integer(0); });
   if (!done) return tl::unexpected(done.error());
   return spent - count + 1;
+}
+
+Result<bool> SemanticStore::was_asked(const std::string& deletion_id, std::uint64_t content) {
+  asked_.bind(deletion_id);
+  std::optional<std::int64_t> before;
+  const auto done = asked_.for_each_row([&] { before = asked_.integer(0); });
+  asked_.reset();
+  if (!done) return tl::unexpected(done.error());
+  if (before && *before != static_cast<std::int64_t>(content)) {
+    return refuse(Code::kExists, "another deletion had this id; ids must be unique");
+  }
+  return before.has_value();
+}
+
+Result<void> SemanticStore::put_deletion(const std::string& id, std::uint64_t content) {
+  return delete_.run(id, static_cast<std::int64_t>(content));
 }
 
 Result<void> SemanticStore::for_each(const std::function<Result<void>(LabelCorrection)>& visit) {

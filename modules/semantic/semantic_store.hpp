@@ -25,6 +25,10 @@ class SemanticStore {
   /// So many numbers of things that nobody was given before, nor will be: the first. Refused: kIo.
   [[nodiscard]] Result<std::int64_t> take_thing_numbers(std::int64_t count);
 
+  /// Whether this very deletion was asked for by this id before. Refused: another one was (kExists); kIo.
+  [[nodiscard]] Result<bool> was_asked(const std::string& deletion_id, std::uint64_t content);
+  [[nodiscard]] Result<void> put_deletion(const std::string& id, std::uint64_t content);
+
   /// In the order of their revisions. Refused (kIo): the file is damaged; and what `visit` refuses.
   [[nodiscard]] Result<void> for_each(const std::function<Result<void>(LabelCorrection)>& visit);
   /// In the order of agents and frames. Refused likewise.
@@ -32,7 +36,7 @@ class SemanticStore {
 
  private:
   Database database_;
-  Statement put_, place_, spend_;
+  Statement put_, place_, spend_, asked_, delete_;
 };
 
 }  // namespace concord

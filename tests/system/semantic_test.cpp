@@ -83,6 +83,39 @@ TEST_F(SemanticSystemTest, labels_outlive_kills_and_come_back_with_a_saved_map) 
   EXPECT_TRUE(happens([&] { return concord("labels")["instances"].size() == 1; }));
 }
 
+TEST_F(SemanticSystemTest, labels_go_to_a_file_and_come_back_to_the_byte) {
+  ASSERT_NO_FATAL_FAILURE(place_a_robot());
+  concord("label add shelf" + kBox);
+  concord("label add door --box \"0 0 0 0.2 0.2 0.2\"");
+  concord("label add door --box \"0.5 0.5 0 0.7 0.7 0.2\"");
+  concord("label reassign door 2 --as shelf");
+  const auto file = [&](const std::string& name) { return (stack_->folder() / name).string(); };
+  const auto bytes = [&](const std::string& name) {
+    std::ifstream in(file(name), std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  const auto forget_labels = [&] {
+    stack_->kill("semantic");
+    for (const char* part : {".db", ".db-wal", ".db-shm"}) {
+      std::filesystem::remove(stack_->folder() / "state" / (std::string("semantic") + part));
+    }
+    stack_->start("semantic");
+  };
+  const auto saved = concord("labels --out " + file("before.pcd"));
+  EXPECT_GT(saved["labelled"], 0);
+  forget_labels();
+  EXPECT_EQ(concord("labels --load " + file("before.pcd"))["instances"], 3);
+  concord("labels --out " + file("after.pcd"));
+  EXPECT_EQ(bytes("before.pcd"), bytes("after.pcd"));
+  concord("labels --out " + file("before.ply"));
+
+  forget_labels();
+  concord("label add desk --box \"0.5 0.5 0 0.7 0.7 0.2\"");
+  const auto labels = concord("labels");
+  EXPECT_EQ(stack_->start_concord(*person_, {"labels", "--load", file("before.ply")}).wait(), 3) << "class 1 is desk";
+  EXPECT_EQ(concord("labels"), labels) << "nothing of it was labelled";
+}
+
 TEST_F(SemanticSystemTest, an_asset_is_injected_moved_and_taken_out_across_kills) {
   ASSERT_NO_FATAL_FAILURE(place_a_robot());
   concord("asset inject crate --transform \"3 3 0 0 0 0 1\" --id c1");

@@ -47,10 +47,12 @@ void AssetFolderNode::write_gltf() {
     if (!done) context_.counters.refused("assets", done.error());
   };
   count(gltf_.keep_only(assets_));
-  const Asset* asset = gltf_.next(assets_);
+  const Asset* asset = gltf_.next(assets_, context_.bus.now());
   if (asset == nullptr) return;
-  conversions_.add(gltf_.work_for(*asset), [this, count, name = asset->name, source = gltf_.source_of(*asset)](
-                                               const Result<Bytes>& reply) { count(gltf_.note(name, source, reply)); });
+  conversions_.add(gltf_.work_for(*asset),
+                   [this, count, name = asset->name, source = gltf_.source_of(*asset)](const Result<Bytes>& reply) {
+                     count(gltf_.note(name, source, reply, context_.bus.now()));
+                   });
 }
 
 }  // namespace concord

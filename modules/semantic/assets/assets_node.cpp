@@ -12,6 +12,7 @@ namespace {
 const std::string kRequests = "in/asset";
 constexpr std::int64_t kPeriod = 1'000'000;
 constexpr std::size_t kSentAtOnce = 16;
+constexpr const char* kNotKnown = "semantic has just begun and does not know all edits yet; ask again";
 
 std::uint64_t content_without_time(AssetRequest request) {
   request.utime = 0;
@@ -42,15 +43,19 @@ AssetsNode::AssetsNode(const NodeContext& context, std::launch how, Parts parts)
 }
 
 const Injections& AssetsNode::injections() const {
-  if (!injections_ || label_revision_ != parts_.labels.revision()) {
+  if (!injections_ || injected_revision_ != parts_.labels.injected_revision()) {
     injections_.emplace(parts_.labels);
-    label_revision_ = parts_.labels.revision();
+    injected_revision_ = parts_.labels.injected_revision();
   }
   return *injections_;
 }
 
 void AssetsNode::put(const AssetRequest& request, std::uint64_t content, std::optional<Fitting> fitting) {
   if (ask_again(request.id, content) || refusals_.repeat(request.id, context_.process, content, request.utime)) return;
+  if (!parts_.history.is_up_to_date()) return replies_.deny(kRequests, request.id, {Code::kBusy, kNotKnown});
+  if (const auto fine = check_free(edit_of_asset(request.id)); !fine) {
+    return refuse_request(request.id, fine.error(), content, request.utime);
+  }
   auto model = model_of(request, fitting);
   if (!model) return refuse_request(request.id, model.error(), content, request.utime);
   if (!layouts_.has_room()) {
@@ -64,6 +69,12 @@ void AssetsNode::put(const AssetRequest& request, std::uint64_t content, std::op
       [this, request, content, fitting = std::move(fitting)](const Result<Bytes>& reply) {
         finish(request, content, fitting, reply);
       });
+}
+
+/// What merge has already would be taken for the edit that is to be sent, and nothing be put in.
+Result<void> AssetsNode::check_free(const std::string& edit_id) const {
+  if (!parts_.labels.knows_edit(edit_id)) return {};
+  return refuse(Code::kExists, "an edit in the map is called " + edit_id + "; ask with another id");
 }
 
 void AssetsNode::refuse_request(const std::string& id, const Error& error, std::uint64_t content, std::int64_t asked) {
@@ -118,12 +129,27 @@ bool AssetsNode::is_under_way(const std::string& request_id) const {
 
 /// Merge answers to our undo, and we to who asked.
 void AssetsNode::take_out(const AssetRequest& request) {
-  const auto before = removed_.find(request.id);
-  const auto there = meant(request);
-  if (before == removed_.end() && !there) return replies_.deny(kRequests, request.id, there.error());
-  UndoRequest undo = removal(before != removed_.end() ? before->second : there->edit_id, request.id, request.author);
+  const auto edit = edit_to_take_out(request);
+  if (!edit) return replies_.deny(kRequests, request.id, edit.error());
+  UndoRequest undo = removal(*edit, request.id, request.author);
   undo.utime = request.utime;
   context_.bus.publish("in/undo", encode(undo));
+}
+
+/// Asked again, it is the one that it was: by then the model may be back, elsewhere. Kept before merge hears of it.
+Result<std::string> AssetsNode::edit_to_take_out(const AssetRequest& request) {
+  const std::uint64_t content = content_without_time(request);
+  const auto is_repeat = parts_.store.was_asked(request.id, content);
+  if (!is_repeat) return tl::unexpected(is_repeat.error());
+  if (const auto before = removed_.find(request.id); before != removed_.end()) {
+    if (*is_repeat) return before->second;
+    return refuse(Code::kExists, "another request had this id; ids must be unique");
+  }
+  auto there = meant(request);
+  if (!there) return tl::unexpected(there.error());
+  const auto kept = *is_repeat ? Result<void>() : parts_.store.put_deletion(request.id, content);
+  if (!kept) return tl::unexpected(kept.error());
+  return std::move(there->edit_id);
 }
 
 /// What is to be moved or taken out, where it is now.
@@ -136,7 +162,7 @@ Result<Labels::Injected> AssetsNode::meant(const AssetRequest& request) const {
   }
   // After a restart it is merge that knows what is in the map.
   if (found == nullptr && !parts_.history.is_up_to_date()) {
-    return refuse(Code::kBusy, "semantic has just begun and does not know all edits yet; ask again");
+    return refuse(Code::kBusy, kNotKnown);
   }
   if (found != nullptr && !injections().is_settled(found->edit_id)) {
     return refuse(Code::kBusy, "it is on its way from one place to another; ask again in a second");
@@ -182,7 +208,10 @@ Result<LabelCorrection::Claim> AssetsNode::claim_of(const AssetRequest& request,
     label.of.instance = of.instance;
     injection.replaces = there.edit_id;
   }
-  auto what = parts_.labels.check(label, laid.voxels.voxels());
+  if (const auto fine = check_free(edit_of_asset(request.id)); !fine) return tl::unexpected(fine.error());
+  const std::vector<VoxelIndex> voxels = laid.voxels.voxels();
+  if (const auto fits = voxel_list(voxels, context_.site.resolution); !fits) return tl::unexpected(fits.error());
+  auto what = parts_.labels.check(label, voxels);
   if (!what) return tl::unexpected(what.error());
   auto claim = std::get<LabelCorrection::Claim>(std::move(*what));
   claim.injection = std::move(injection);

@@ -15,6 +15,7 @@
 #include "semantic/assets/lay_model.hpp"
 #include "semantic/edit_history_node.hpp"
 #include "semantic/labels/labels.hpp"
+#include "semantic/semantic_store.hpp"
 #include "semantic/work_queue.hpp"
 
 namespace concord {
@@ -34,6 +35,7 @@ class AssetsNode {
     /// Stores and applies a label correction. Refused: kIo.
     std::function<Result<void>(const std::string& id, const std::string& author, std::uint64_t content, Labels::What)>
         commit;
+    SemanticStore& store;
     /// How an instance shows in the map.
     std::function<LabelInstance(InstanceId)> instance;
   };
@@ -70,6 +72,8 @@ class AssetsNode {
 
  private:
   void take_out(const AssetRequest& request);
+  [[nodiscard]] Result<std::string> edit_to_take_out(const AssetRequest& request);
+  [[nodiscard]] Result<void> check_free(const std::string& edit_id) const;
   [[nodiscard]] Result<Labels::Injected> meant(const AssetRequest& request) const;
   [[nodiscard]] Result<const Asset*> asset_of(const AssetRequest& request) const;
   [[nodiscard]] Result<ModelToLay> model_of(const AssetRequest& request, const std::optional<Fitting>& fitting) const;
@@ -95,7 +99,7 @@ class AssetsNode {
   std::map<std::string, std::string> removed_;     ///< the edits that requests took out
   std::map<std::string, std::int64_t> sent_;       ///< when what was asked of merge was asked last
   mutable std::optional<Injections> injections_;   ///< as of the revisions below
-  mutable std::int64_t label_revision_ = -1;
+  mutable std::int64_t injected_revision_ = -1;
 };
 
 }  // namespace concord

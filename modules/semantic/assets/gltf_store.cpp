@@ -1,5 +1,7 @@
 #include "semantic/assets/gltf_store.hpp"
 
+#include <algorithm>
+
 #include <yaml-cpp/yaml.h>
 #include <Eigen/Geometry>
 
@@ -15,6 +17,30 @@ namespace fs = std::filesystem;
 
 const std::string kNotes = "made.yaml";
 
+FileState state_in(const YAML::Node& node) {
+  return {node["file"].as<std::string>(), node["written"].as<std::int64_t>(), node["bytes"].as<std::int64_t>()};
+}
+
+void emit(YAML::Emitter& out, const FileState& state) {
+  out << YAML::Key << "file" << YAML::Value << YAML::DoubleQuoted << state.name;
+  out << YAML::Key << "written" << YAML::Value << state.written;
+  out << YAML::Key << "bytes" << YAML::Value << state.bytes;
+}
+
+void append(Bytes& out, const FileState& state) {
+  archive::append_text(out, state.name);
+  append_le(out, state.written);
+  append_le(out, state.bytes);
+}
+
+FileState read_state(archive::FieldReader& in) {
+  FileState state;
+  state.name = in.text();
+  state.written = in.integer<std::int64_t>();
+  state.bytes = in.integer<std::int64_t>();
+  return state;
+}
+
 }  // namespace
 
 GltfStore::GltfStore(fs::path folder) : folder_(std::move(folder)) { read_notes(); }
@@ -28,8 +54,8 @@ void GltfStore::read_notes() {
     for (const auto& entry : YAML::LoadFile(file.string())) {
       const YAML::Node& of = entry.second;
       Made made;
-      made.source = {of["file"].as<std::string>(), of["written"].as<std::int64_t>(), of["bytes"].as<std::int64_t>(),
-                     of["unit"].as<double>()};
+      made.source = {state_in(of), of["unit"].as<double>()};
+      for (const YAML::Node& sibling : of["siblings"]) made.siblings.push_back(state_in(sibling));
       for (int axis = 0; axis < 3; ++axis) made.size[axis] = of["size"][axis].as<double>();
       made_[entry.first.as<std::string>()] = made;
     }
@@ -45,9 +71,14 @@ Result<void> GltfStore::write_notes() const {
   for (const auto& [name, made] : made_) {
     if (!made.is_readable) continue;
     out << YAML::Key << name << YAML::Value << YAML::Flow << YAML::BeginMap;
-    out << YAML::Key << "file" << YAML::Value << YAML::DoubleQuoted << made.source.file;
-    out << YAML::Key << "written" << YAML::Value << made.source.written;
-    out << YAML::Key << "bytes" << YAML::Value << made.source.bytes;
+    emit(out, made.source.file);
+    out << YAML::Key << "siblings" << YAML::Value << YAML::BeginSeq;
+    for (const FileState& sibling : made.siblings) {
+      out << YAML::BeginMap;
+      emit(out, sibling);
+      out << YAML::EndMap;
+    }
+    out << YAML::EndSeq;
     out << YAML::Key << "unit" << YAML::Value << made.source.unit;
     out << YAML::Key << "size" << YAML::Value << YAML::Flow << YAML::BeginSeq << made.size.x() << made.size.y()
         << made.size.z() << YAML::EndSeq << YAML::EndMap;
@@ -57,17 +88,15 @@ Result<void> GltfStore::write_notes() const {
   return write_whole_file(folder_ / "gltf" / kNotes, {text, out.size()});
 }
 
-GltfStore::Source GltfStore::source_of(const Asset& asset) const {
-  const fs::path file = folder_ / asset.file;
-  std::error_code none;
-  const auto written = fs::last_write_time(file, none).time_since_epoch().count();
-  const auto bytes = fs::file_size(file, none);
-  return {asset.file, written, none ? 0 : static_cast<std::int64_t>(bytes), asset.unit};
-}
+GltfStore::Source GltfStore::source_of(const Asset& asset) const { return {state_of(folder_, asset.file), asset.unit}; }
 
 const GltfStore::Made* GltfStore::made_of(const Asset& asset) const {
   const auto it = made_.find(asset.name);
-  return it != made_.end() && it->second.source == source_of(asset) ? &it->second : nullptr;
+  if (it == made_.end() || it->second.source != source_of(asset)) return nullptr;
+  const fs::path beside = (folder_ / asset.file).parent_path();
+  const bool are_as_read = std::ranges::all_of(
+      it->second.siblings, [&](const FileState& sibling) { return state_of(beside, sibling.name) == sibling; });
+  return are_as_read ? &it->second : nullptr;
 }
 
 Eigen::Vector3d GltfStore::size_of(const Asset& asset) const {
@@ -83,8 +112,9 @@ std::int64_t GltfStore::bytes_of(const Asset& asset) const {
   return error ? 0 : static_cast<std::int64_t>(size);
 }
 
-const Asset* GltfStore::next(const std::map<std::string, Asset>& assets) const {
+const Asset* GltfStore::next(const std::map<std::string, Asset>& assets, std::int64_t now) const {
   for (const auto& [name, asset] : assets) {
+    if (const auto failed = failed_.find(name); failed != failed_.end() && now - failed->second < kPause) continue;
     const Made* made = made_of(asset);
     if (made == nullptr || (made->is_readable && bytes_of(asset) == 0)) return &asset;
   }
@@ -93,7 +123,8 @@ const Asset* GltfStore::next(const std::map<std::string, Asset>& assets) const {
 
 ChildWork::Work GltfStore::work_for(const Asset& asset) const {
   return [source = folder_ / asset.file, to = file_of(asset.name), unit = asset.unit]() -> Result<Bytes> {
-    const auto mesh = read_model_file_here(source);
+    std::vector<FileState> siblings;
+    const auto mesh = read_model_file_here(source, &siblings);
     if (!mesh) return tl::unexpected(mesh.error());
     Eigen::AlignedBox3d box;
     for (const Eigen::Vector3d& p : mesh->vertices) box.extend(p);
@@ -102,20 +133,30 @@ ChildWork::Work GltfStore::work_for(const Asset& asset) const {
     if (const auto written = write_whole_file(to, write_glb(*mesh, unit)); !written) {
       return tl::unexpected(written.error());
     }
-    Bytes size;
-    archive::append_vector<3>(size, box.sizes() * unit);
-    return size;
+    Bytes reply;
+    archive::append_vector<3>(reply, box.sizes() * unit);
+    for (const FileState& sibling : siblings) append(reply, sibling);
+    return reply;
   };
 }
 
-Result<void> GltfStore::note(const std::string& name, const Source& source, const Result<Bytes>& reply) {
-  if (!reply && reply.error().code == Code::kIo) return tl::unexpected(reply.error());  // the disk may have room again
-  Made& made = made_[name] = {source};
+Result<void> GltfStore::note(const std::string& name, const Source& source, const Result<Bytes>& reply,
+                             std::int64_t now) {
+  failed_.erase(name);
+  if (!reply && reply.error().code == Code::kIo) {  // it may be readable, or the disk have room, later
+    failed_[name] = now;
+    return tl::unexpected(reply.error());
+  }
+  Made& made = made_[name];
+  made = Made();
+  made.source = source;
   if (reply) {
     archive::FieldReader in(*reply);
     made.size = archive::read_vector<3>(in);
+    while (in.ok() && !in.rest().empty()) made.siblings.push_back(read_state(in));
     if (in.ok() && made.size.allFinite()) return write_notes();
   }
+  made.siblings.clear();
   made.size.setZero();
   made.is_readable = false;
   std::error_code none;
@@ -130,6 +171,7 @@ Result<void> GltfStore::keep_only(const std::map<std::string, Asset>& assets) {
   for (const auto& entry : made_) {
     if (is_gone(entry)) fs::remove(file_of(entry.first), none);
   }
+  std::erase_if(failed_, is_gone);
   return std::erase_if(made_, is_gone) > 0 ? write_notes() : Result<void>();
 }
 

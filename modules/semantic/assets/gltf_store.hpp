@@ -4,10 +4,12 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/assets.hpp"
 #include "core/error.hpp"
 #include "semantic/models/child_work.hpp"
+#include "semantic/models/model_file.hpp"
 
 namespace concord {
 
@@ -16,6 +18,8 @@ namespace concord {
 /// it is not made again.
 class GltfStore {
  public:
+  static constexpr std::int64_t kPause = 30'000'000;  ///< microseconds
+
   explicit GltfStore(std::filesystem::path folder);
 
   /// Bytes of the asset's file; 0 if there is none of the model as it is.
@@ -26,26 +30,27 @@ class GltfStore {
 
   /// What a file is made of.
   struct Source {
-    std::string file;
-    std::int64_t written = 0;  ///< by the file system's clock
-    std::int64_t bytes = 0;
+    FileState file;
     double unit = 0;
     bool operator==(const Source&) const = default;
   };
   [[nodiscard]] Source source_of(const Asset& asset) const;
 
-  /// The first that has none, or none of its model as it is. Not one that could not be read, until it changes.
-  [[nodiscard]] const Asset* next(const std::map<std::string, Asset>& assets) const;
+  /// The first that has none, or none of its model as it is. Not one that is no model, until it changes; nor for
+  /// kPause one whose file or disk failed. @param now microseconds
+  [[nodiscard]] const Asset* next(const std::map<std::string, Asset>& assets, std::int64_t now) const;
   /// Writes the file, in a process of its own. Refused: read_model_file, kIo.
   [[nodiscard]] ChildWork::Work work_for(const Asset& asset) const;
   /// What came of that. Refused: what it refused, and kIo, where what was made cannot be noted.
-  [[nodiscard]] Result<void> note(const std::string& name, const Source& source, const Result<Bytes>& reply);
+  [[nodiscard]] Result<void> note(const std::string& name, const Source& source, const Result<Bytes>& reply,
+                                  std::int64_t now);
   /// Removes what was made of assets that are gone. Refused: kIo.
   [[nodiscard]] Result<void> keep_only(const std::map<std::string, Asset>& assets);
 
  private:
   struct Made {
     Source source;
+    std::vector<FileState> siblings;  ///< that were read with it
     Eigen::Vector3d size = Eigen::Vector3d::Zero();
     bool is_readable = true;
   };
@@ -59,6 +64,7 @@ class GltfStore {
 
   std::filesystem::path folder_;
   std::map<std::string, Made> made_;
+  std::map<std::string, std::int64_t> failed_;  ///< by asset: when
 };
 
 }  // namespace concord

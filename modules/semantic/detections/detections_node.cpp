@@ -12,6 +12,10 @@ const std::string kSeen = "in/detection", kDecisions = "in/detection_decision";
 constexpr std::int64_t kPeriod = 1'000'000;
 constexpr double kLeastScore = 0.5;
 constexpr std::int64_t kNumbersAtOnce = 100;
+/// What sightings may spend of what all labels may take, and all edits (kMaxPins): the rest is people's.
+constexpr std::int64_t kMostMovedVoxels = kMaxLabelVoxelsEver / 4;
+constexpr const char* kWasDropped =
+    ", which a person dropped: it is proposed again when nobody has seen it for ten minutes";
 
 std::uint64_t content_without_time(DetectionDecision decision) {
   decision.utime = 0;
@@ -41,6 +45,7 @@ DetectionsNode::DetectionsNode(const NodeContext& context, Parts parts)
   listen<DetectionDecision>(context_.bus, context_.counters, context_.process, kDecisions,
                             [this](const std::string&, const DetectionDecision& decision) { on_decision(decision); });
   context_.bus.every(kPeriod, [this] {
+    sightings_.forget_dropped(context_.bus.now());
     follow_injections();
     list_.set(sightings_.list());
     context_.counters.set("things", static_cast<std::int64_t>(sightings_.list().size()));
@@ -54,6 +59,11 @@ void DetectionsNode::on_detection(const Detection& detection) {
   if (answers_.repeat(detection.id, context_.process, content, detection.utime)) return;
   const auto seen = see(detection);
   if (!seen) return answers_.give(replies_.denied(kSeen, detection.id, seen.error()), content, detection.utime);
+  if (seen->is_dropped) {
+    return answers_.give(
+        replies_.granted(detection.id, seen->number, 0, "thing " + std::to_string(seen->number) + kWasDropped),
+        content);
+  }
   const Thing& thing = *sightings_.find(seen->number);
   answers_.give(
       replies_.granted(detection.id, thing.number, thing.sightings,
@@ -148,6 +158,14 @@ void DetectionsNode::confirm(const DetectionDecision& decision, std::uint64_t co
 /// Whoever sees it elsewhere may be off: what fits where it lies already is not moved. The model's own voxels are
 /// occupied, and would hold it where it is.
 void DetectionsNode::move(const Thing& thing, const Transform& T_map_asset) {
+  const auto& placed = parts_.assets.injections().placed();
+  const auto there = placed.find(thing.injection);
+  if (there == placed.end()) return;
+  if (parts_.labels.moved_voxels() >= kMostMovedVoxels) {
+    return context_.counters.refused(
+        "move_seen", {Code::kTooLarge, "moves have taken a quarter of the room for labels; " + thing.injection +
+                                           " stays where it is: move it by hand"});
+  }
   AssetRequest request;
   request.id = "seen-" + std::to_string(thing.number) + "-" + std::to_string(context_.bus.now());
   request.author = thing.author;
@@ -155,9 +173,13 @@ void DetectionsNode::move(const Thing& thing, const Transform& T_map_asset) {
   request.of = thing.injection;
   request.T_map_asset = T_map_asset;
   request.utime = context_.bus.now();
-  const auto judge = [this, number = thing.number](const ObjectFit& fit) -> std::optional<std::string> {
+  // A person who moves it meanwhile, or takes it out, knows better.
+  const auto judge = [this, number = thing.number, of = thing.injection,
+                      from = there->second.edit_id](const ObjectFit& fit) -> std::optional<std::string> {
+    const auto& in_map = parts_.assets.injections().placed();
+    const auto still = in_map.find(of);
     const Thing* now = sightings_.find(number);
-    if (now == nullptr) return std::nullopt;
+    if (now == nullptr || still == in_map.end() || still->second.edit_id != from) return std::nullopt;
     if (!is_same_place(now->T_map_asset, fit.T_map_model)) return words(fit);
     sightings_.seen_there(number);
     return std::nullopt;
@@ -197,7 +219,7 @@ void DetectionsNode::follow_injections() {
     if (thing.injection.empty()) continue;
     const auto there = all.find(thing.injection);
     if (there == all.end()) {
-      sightings_.drop(thing.number);
+      sightings_.forget(thing.number);
       continue;
     }
     followed.insert(thing.injection);

@@ -22,6 +22,7 @@ class DetectionsNode {
  public:
   struct Parts {
     const BrickMap& map;
+    const Labels& labels;
     LayersNode& layers;
     AssetsNode& assets;
     SemanticStore& store;

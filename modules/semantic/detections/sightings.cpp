@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <tuple>
 
 namespace concord {
 namespace {
@@ -47,10 +48,11 @@ Sightings::Kept* Sightings::thing_of(const Detection& detection, const std::stri
 bool Sightings::make_room() {
   if (things_.size() < kMaxThings) return true;
   const auto oldest = std::ranges::min_element(things_, {}, [](const auto& entry) {
-    return std::pair(!entry.second.thing.injection.empty(), entry.second.thing.last_seen);
+    const Kept& kept = entry.second;
+    return std::tuple(!kept.thing.injection.empty(), !kept.is_dropped, kept.heard);
   });
   if (!oldest->second.thing.injection.empty()) return false;
-  drop(oldest->first);
+  forget(oldest->first);
   return true;
 }
 
@@ -100,6 +102,8 @@ Result<Sightings::Seen> Sightings::see(const Detection& detection, const std::st
   thing.score = std::max(thing.score, detection.score);
   thing.sightings = std::min(thing.sightings, 1 << 30) + 1;
   thing.last_seen = std::max(thing.last_seen, detection.utime);
+  kept->heard = now;
+  seen.is_dropped = kept->is_dropped;
   thing.author = detection.author;
   follow(detection, *kept);
 
@@ -111,21 +115,25 @@ Result<Sightings::Seen> Sightings::see(const Detection& detection, const std::st
   } else if (lies_at(*kept, T_map_asset)) {
     kept->agreeing = 0;
   } else {
-    const bool agrees = kept->agreeing > 0 && distance(kept->elsewhere, T_map_asset) <= kMoved;
-    kept->agreeing = agrees ? std::min(kept->agreeing + 1, 10) : 1;
-    kept->elsewhere = agrees ? between(kept->elsewhere, T_map_asset, 1.0 / kept->agreeing) : T_map_asset;
-    if (kept->agreeing >= kAgreeing && now >= kept->next_move) {
-      seen.moved_to = kept->elsewhere;
-      kept->next_move = now + kept->pause;
-      kept->pause = std::min(2 * kept->pause, kLongestPause);
-    }
+    see_elsewhere(*kept, T_map_asset, now, seen);
   }
   return seen;
 }
 
+void Sightings::see_elsewhere(Kept& kept, const Transform& T_map_asset, std::int64_t now, Seen& seen) {
+  const bool agrees = kept.agreeing > 0 && distance(kept.elsewhere, T_map_asset) <= kMoved;
+  kept.agreeing = agrees ? std::min(kept.agreeing + 1, 10) : 1;
+  kept.elsewhere = agrees ? between(kept.elsewhere, T_map_asset, 1.0 / kept.agreeing) : T_map_asset;
+  if (kept.agreeing < kAgreeing || now < kept.next_move) return;
+  if (now - kept.next_move >= kLongestPause) kept.pause = kFirstPause;
+  seen.moved_to = kept.elsewhere;
+  kept.next_move = now + kept.pause;
+  kept.pause = std::min(2 * kept.pause, kLongestPause);
+}
+
 const Thing* Sightings::find(std::int64_t number) const {
   const auto it = things_.find(number);
-  return it != things_.end() ? &it->second.thing : nullptr;
+  return it != things_.end() && !it->second.is_dropped ? &it->second.thing : nullptr;
 }
 
 void Sightings::add(const std::string& asset, const std::string& class_name, const std::string& injection,
@@ -150,8 +158,6 @@ void Sightings::put(std::int64_t number, const std::string& injection, const Tra
   kept.thing.injection = injection;
   kept.thing.T_map_asset = T_map_asset;
   kept.agreeing = 0;
-  kept.next_move = 0;
-  kept.pause = kFirstPause;
 }
 
 void Sightings::seen_there(std::int64_t number) {
@@ -160,16 +166,31 @@ void Sightings::seen_there(std::int64_t number) {
   kept.agreeing = 0;
 }
 
-void Sightings::drop(std::int64_t number) {
+void Sightings::forget(std::int64_t number) {
   const auto it = things_.find(number);
   if (it == things_.end()) return;
   for (const auto& name : it->second.names) followed_.erase(name);
   things_.erase(it);
 }
 
+void Sightings::drop(std::int64_t number) {
+  const auto it = things_.find(number);
+  if (it != things_.end()) it->second.is_dropped = true;
+}
+
+void Sightings::forget_dropped(std::int64_t now) {
+  std::vector<std::int64_t> old;
+  for (const auto& [number, kept] : things_) {
+    if (kept.is_dropped && now - kept.heard >= kDroppedFor) old.push_back(number);
+  }
+  for (const std::int64_t number : old) forget(number);
+}
+
 std::vector<Thing> Sightings::list() const {
   std::vector<Thing> out;
-  for (const auto& [number, kept] : things_) out.push_back(kept.thing);
+  for (const auto& [number, kept] : things_) {
+    if (!kept.is_dropped) out.push_back(kept.thing);
+  }
   return out;
 }
 

@@ -23,14 +23,18 @@ inline constexpr double kTurned = 0.5;  ///< radians
 /// within kSameThing; else of a new one. Until a person confirms it, a thing lies where its sightings lie on average,
 /// each by its score, the last ten counting. Confirmed, it stays where it was put until kAgreeing sightings in a row
 /// agree that it is somewhere else. Whoever is off a little sees it a little off, always: where it is seen while it
-/// lies where it was put is as good as there. What could not be moved is tried less and less often.
+/// lies where it was put is as good as there. A move is kept for good, so each is called for later after the one before
+/// than that was, be it that nothing came of it or that the thing is always on its way.
+///
+/// What a person dropped is known for none, and not told of, until nobody has seen it for kDroppedFor.
 class Sightings {
  public:
   static constexpr double kSameThing = 0.5;  ///< metres
   static constexpr int kAgreeing = 3;
-  static constexpr std::size_t kMostFollowers = 32;       ///< of one thing, who have a name for it
-  static constexpr std::int64_t kFirstPause = 5'000'000;  ///< after a move was called for, microseconds
-  static constexpr std::int64_t kLongestPause = 300'000'000;
+  static constexpr std::size_t kMostFollowers = 32;             ///< of one thing, who have a name for it
+  static constexpr std::int64_t kFirstPause = 5'000'000;        ///< after a move was called for, microseconds
+  static constexpr std::int64_t kLongestPause = 3'600'000'000;  ///< and so long after its end all begins anew
+  static constexpr std::int64_t kDroppedFor = 600'000'000;      ///< microseconds
   /// None twice, over all restarts. Refused: kIo.
   using NextNumber = std::function<Result<std::int64_t>()>;
 
@@ -39,15 +43,16 @@ class Sightings {
   struct Seen {
     std::int64_t number = 0;
     bool is_new = false;
+    bool is_dropped = false;            ///< a person said that it is none
     std::optional<Transform> moved_to;  ///< it was confirmed, and lies there now: it has to be moved
   };
-  /// @param asset the one that was seen, whatever name the detection has for it. @param now microseconds. Refused
-  /// (kTooLarge): one thing more than kMaxThings, all of which are confirmed; else the one that was not seen for the
-  /// longest time gives way.
+  /// @param asset the one that was seen, whatever name the detection has for it. @param now microseconds, ours: who
+  /// sees has a clock of their own. Refused (kTooLarge): one thing more than kMaxThings, all of which are confirmed;
+  /// else the one that was not seen for the longest time gives way, dropped ones first.
   [[nodiscard]] Result<Seen> see(const Detection& detection, const std::string& asset, const std::string& class_name,
                                  const Transform& T_map_asset, std::int64_t now);
 
-  /// Null: there is none of this number.
+  /// Null: there is none of this number, or it was dropped.
   [[nodiscard]] const Thing* find(std::int64_t number) const;
   /// One that nobody saw, but that is in the map.
   void add(const std::string& asset, const std::string& class_name, const std::string& injection,
@@ -56,15 +61,21 @@ class Sightings {
   void put(std::int64_t number, const std::string& injection, const Transform& T_map_asset);
   /// Where it was seen last, as elsewhere, it is seen while it lies where it was put. @pre it is there.
   void seen_there(std::int64_t number);
-  /// It is none, or is there no more.
+  /// It is there no more.
+  void forget(std::int64_t number);
+  /// A person says that it is none.
   void drop(std::int64_t number);
-  /// In the order of their numbers.
+  /// Lets go of what was dropped and not seen for long.
+  void forget_dropped(std::int64_t now);
+  /// In the order of their numbers; not those that were dropped.
   [[nodiscard]] std::vector<Thing> list() const;
 
  private:
   struct Kept {
     Thing thing;
-    double weight = 0;  ///< of the sightings that its place is the mean of
+    bool is_dropped = false;
+    std::int64_t heard = 0;  ///< when it was seen last, by our clock
+    double weight = 0;       ///< of the sightings that its place is the mean of
     Transform elsewhere = Transform::Identity();
     int agreeing = 0;                  ///< sightings in a row that it is elsewhere
     std::optional<Transform> seen_at;  ///< while it lies where it was put
@@ -74,6 +85,7 @@ class Sightings {
   [[nodiscard]] static bool lies_at(const Kept& kept, const Transform& T_map_asset);
   [[nodiscard]] Result<Kept*> add_thing(const std::string& asset, const Transform& T_map_asset);
   void follow(const Detection& detection, Kept& kept);
+  static void see_elsewhere(Kept& kept, const Transform& T_map_asset, std::int64_t now, Seen& seen);
   [[nodiscard]] Kept* thing_of(const Detection& detection, const std::string& asset, const Transform& T_map_asset);
   [[nodiscard]] bool make_room();
 

@@ -5,16 +5,16 @@
 #include <vector>
 
 #include "core/corrections.hpp"
-#include "core/lattice.hpp"
+#include "semantic/labels/outlines.hpp"
 
 namespace concord {
 
 /// Something labelled that robots keep away from.
 struct KeptClearOf {
-  std::string name;                ///< for people: class and number
-  std::vector<VoxelIndex> voxels;  ///< of the map, where it shows; not empty
-  double margin = 0;               ///< metres, above 0
-  int cost = 0;                    ///< 0: they keep out; else a metre there costs so many more
+  std::string name;   ///< for people: class and number
+  Outline outline;    ///< where it shows in the map; of at least a voxel
+  double margin = 0;  ///< metres, above 0
+  int cost = 0;       ///< 0: they keep out; else a metre there costs so many more
 };
 
 /// A no-go or costly zone around each thing: all ground within `margin` of its voxels, seen from above, over the

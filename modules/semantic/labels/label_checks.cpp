@@ -70,6 +70,12 @@ Result<void> Labels::check_voxels(const std::vector<VoxelIndex>& voxels) const {
   if (many > kMaxLabelVoxels) return refuse_too_many(kMaxLabelVoxels);
   if (many > kMaxAllLabelVoxels - voxels_) return refuse_too_many(kMaxAllLabelVoxels);
   if (many > kMaxLabelVoxelsEver - voxels_ever_) return refuse_too_many(kMaxLabelVoxelsEver);
+  // Counted only where they might be too many: no voxel lies in two bricks.
+  const std::int64_t left = kMaxLabelBricks - bricks_ever_;
+  if (many > left && static_cast<std::int64_t>(masks_of(voxels).brick_count()) > left) {
+    return refuse(Code::kTooLarge, "all labels together, undone ones too, may lie in " +
+                                       std::to_string(kMaxLabelBricks) + " bricks of 8 voxels");
+  }
   if (!std::ranges::all_of(voxels, [](VoxelIndex v) { return in_bounds(v); })) {
     return refuse(Code::kOutOfBounds, "a voxel lies beyond the map's bounds");
   }
@@ -171,7 +177,7 @@ Result<Labels::What> Labels::check_undo(const LabelRequest& request) const {
   if (step.active == redo) {
     return refuse(Code::kConflict, request.correction_id + (redo ? " is not undone" : " is undone already"));
   }
-  if (redo && step.is_claim && made_[it->second].count > kMaxAllLabelVoxels - voxels_) {
+  if (redo && step.is_claim && step.claim.edit_id.empty() && made_[it->second].count > kMaxAllLabelVoxels - voxels_) {
     return refuse_too_many(kMaxAllLabelVoxels);
   }
   if (std::holds_alternative<Rename>(step.what)) {
@@ -269,15 +275,6 @@ Result<void> Labels::follows(const LabelCorrection& correction) const {
   }
   if (by_id_.contains(correction.id)) return refuse(Code::kExists, "another one has the id " + correction.id);
   return std::visit(Follow{*this}, correction.what);
-}
-
-std::map<InstanceId, std::string> Labels::assets() const {
-  std::map<InstanceId, std::string> out;
-  for (const auto& [edit_id, steps] : by_edit_) {
-    const std::uint32_t step = steps.front();
-    if (const auto of = holder_of(step)) out[*of] = steps_[step].claim.injection.asset;
-  }
-  return out;
 }
 
 }  // namespace concord

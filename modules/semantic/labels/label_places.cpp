@@ -71,18 +71,26 @@ void Labels::lay(std::uint32_t step, const Transform& T_map_agent, BrickSet& tou
   const auto& claimed = kept.claimed.empty() ? kept.bricks : kept.claimed;
   auto now = followed(claimed, kept.claim.anchor.T_map_agent, T_map_agent, resolution_).sorted();
   if (now == kept.bricks) return;
-  for (const auto& [index, mask] : kept.bricks) {
+  if (kept.active) leave_bricks(step, touched);
+  if (kept.claimed.empty()) kept.claimed = std::move(kept.bricks);
+  kept.bricks = std::move(now);
+  if (kept.active) enter_bricks(step, touched);
+}
+
+void Labels::enter_bricks(std::uint32_t step, BrickSet& touched) {
+  for (const auto& [index, mask] : steps_[step].bricks) {
+    touched.insert(index);
+    auto& claims = by_brick_[index];
+    claims.insert(std::ranges::lower_bound(claims, step), step);
+  }
+}
+
+void Labels::leave_bricks(std::uint32_t step, BrickSet& touched) {
+  for (const auto& [index, mask] : steps_[step].bricks) {
     touched.insert(index);
     const auto claims = by_brick_.find(index);
     std::erase(claims->second, step);
     if (claims->second.empty()) by_brick_.erase(claims);
-  }
-  if (kept.claimed.empty()) kept.claimed = std::move(kept.bricks);
-  kept.bricks = std::move(now);
-  for (const auto& [index, mask] : kept.bricks) {
-    touched.insert(index);
-    auto& claims = by_brick_[index];
-    claims.insert(std::ranges::lower_bound(claims, step), step);
   }
 }
 

@@ -16,9 +16,9 @@ bool LabelView::refresh(BrickIndex index) {
   dense.fill(kUnknown);
   const Brick* map = map_.find(index);
   const VoxelMask occupied = map != nullptr ? map->occupied() : VoxelMask{};
-  for (const Labels::Share& share : map != nullptr ? labels_.shares(index) : std::vector<Labels::Share>{}) {
+  for (const Labels::Share& share : labels_.shares(index, occupied)) {
     for (int word = 0; word < 8; ++word) {
-      for (std::uint64_t bits = share.voxels[word] & occupied[word]; bits != 0; bits &= bits - 1) {
+      for (std::uint64_t bits = share.voxels[word]; bits != 0; bits &= bits - 1) {
         const auto [slot, is_new] = slots_.try_emplace(share.of, static_cast<std::int32_t>(by_slot_.size()));
         if (is_new) by_slot_.push_back(share.of);
         dense[static_cast<std::size_t>(word * 64 + std::countr_zero(bits))] = value_of_slot(slot->second);
@@ -99,6 +99,16 @@ std::map<InstanceId, std::vector<VoxelIndex>> LabelView::by_instance(
   return out;
 }
 
+std::map<InstanceId, std::vector<VoxelIndex>> LabelView::in_brick(BrickIndex index) const {
+  std::map<InstanceId, std::vector<VoxelIndex>> out;
+  const Brick* brick = shown_.find(index);
+  if (brick == nullptr) return out;
+  brick->for_each([&](int local, LogOdds value) {
+    out[by_slot_[static_cast<std::size_t>(slot_of_value(value))]].push_back(voxel_at(index, local));
+  });
+  return out;
+}
+
 std::vector<VoxelIndex> LabelView::border_of(const std::vector<VoxelIndex>& voxels) const {
   std::vector<VoxelIndex> out;
   for (const VoxelIndex v : voxels) {
@@ -139,10 +149,7 @@ std::vector<LabelInstance> LabelView::within(const LabelQuery& query) const {
 Result<std::vector<LabelInstance>> LabelView::answer(const LabelQuery& query) const {
   auto out = found(query);
   if (!out || out->empty()) return out;
-  const auto assets = labels_.assets();
-  for (LabelInstance& one : *out) {
-    if (const auto it = assets.find(one.of); it != assets.end()) one.asset = it->second;
-  }
+  for (LabelInstance& one : *out) one.asset = labels_.asset_of(one.of);
   return out;
 }
 

@@ -30,6 +30,8 @@ class LabelView {
   [[nodiscard]] std::vector<VoxelIndex> voxels_of(InstanceId of) const;
   /// What shows of each instance; of all (0), or of one class's.
   [[nodiscard]] std::map<InstanceId, std::vector<VoxelIndex>> by_instance(ClassId label) const;
+  /// The same of a brick, by instance.
+  [[nodiscard]] std::map<InstanceId, std::vector<VoxelIndex>> in_brick(BrickIndex index) const;
   /// Of all for which this holds.
   [[nodiscard]] std::map<InstanceId, std::vector<VoxelIndex>> by_instance(
       const std::function<bool(InstanceId)>& wanted) const;

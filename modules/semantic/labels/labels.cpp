@@ -28,19 +28,38 @@ struct Labels::Apply {
     if (!claim.class_name.empty()) labels.classes_[claim.of.label].name = claim.class_name;
     labels.give(claim.of);
     labels.claims_[claim.of].push_back(step);
-    if (!claim.edit_id.empty()) labels.by_edit_[claim.edit_id].push_back(step);
-    labels.voxels_ += static_cast<std::int64_t>(claim.voxels.size());
-    labels.voxels_ever_ += static_cast<std::int64_t>(claim.voxels.size());
-    for (const auto& [index, mask] : kept.bricks) {
-      labels.by_brick_[index].push_back(step);
-      touched.insert(index);
-    }
     made.of = claim.of;
     made.count = static_cast<std::int64_t>(claim.voxels.size());
+    labels.voxels_ever_ += made.count;
+    labels.bricks_ever_ += static_cast<std::int64_t>(kept.bricks.size());
+    if (claim.edit_id.empty()) {
+      labels.voxels_ += made.count;
+    } else {
+      add_injection(claim);
+    }
+    labels.enter_bricks(step, touched);
     if (claim.anchor.agent.empty()) return;
     Frame& frame = labels.frames_[{claim.anchor.agent, claim.anchor.frame_id}];
     frame.claims.push_back(step);
     if (frame.T_map_agent) labels.lay(step, *frame.T_map_agent, touched);
+  }
+  void switch_claim(std::uint32_t claim, bool redo) const {
+    if (redo) {
+      labels.enter_bricks(claim, touched);
+    } else {
+      labels.leave_bricks(claim, touched);
+    }
+    if (!labels.steps_[claim].claim.edit_id.empty()) {
+      ++labels.injected_revision_;
+    } else {
+      labels.voxels_ += (redo ? 1 : -1) * labels.made_[claim].count;
+    }
+  }
+  void add_injection(const Claim& claim) const {
+    labels.by_edit_[claim.edit_id].push_back(step);
+    if (!labels.edits_.contains(claim.edit_id)) labels.unsaid_.insert(claim.edit_id);
+    if (!claim.injection.replaces.empty()) labels.moved_voxels_ += made.count;
+    ++labels.injected_revision_;
   }
   void operator()(const Rename& rename) const {
     labels.renames_.push_back(step);
@@ -62,11 +81,10 @@ struct Labels::Apply {
   void operator()(const Undo& undo) const {
     const std::uint32_t subject = labels.by_id_.at(undo.correction_id);
     Step& kept = labels.steps_[subject];
-    if (kept.is_claim && kept.active != undo.redo) labels.voxels_ += (undo.redo ? 1 : -1) * labels.made_[subject].count;
+    made.of = labels.made_[subject].of;
+    if (kept.is_claim && kept.active != undo.redo) switch_claim(subject, undo.redo);
     kept.active = undo.redo;
     labels.lay_if_astray(subject, touched);
-    made.of = labels.made_[subject].of;
-    for (const auto& [index, mask] : kept.bricks) touched.insert(index);
     if (const auto* reassign = std::get_if<Reassign>(&kept.what)) labels.touch(reassign->from, touched);
     if (const auto* take_off = std::get_if<TakeOff>(&kept.what); take_off != nullptr && !kept.is_claim) {
       labels.touch(take_off->of, touched);
@@ -90,6 +108,7 @@ void Labels::set_edit(const std::string& edit_id, const EditState& state, BrickS
   const auto [it, is_new] = edits_.try_emplace(edit_id, state);
   const bool was_active = !is_new && it->second.active;
   it->second = state;
+  unsaid_.erase(edit_id);
   if (was_active == state.active) return;
   const auto steps = by_edit_.find(edit_id);
   if (steps == by_edit_.end()) return;
@@ -114,8 +133,8 @@ std::vector<Labels::Injected> Labels::injected() const {
 
 std::vector<Labels::Waiting> Labels::waiting(std::size_t most) const {
   std::vector<Waiting> out;
-  for (auto it = by_edit_.begin(); it != by_edit_.end() && out.size() < most; ++it) {
-    if (auto one = waiting_for(it->first)) out.push_back(std::move(*one));
+  for (auto it = unsaid_.begin(); it != unsaid_.end() && out.size() < most; ++it) {
+    if (auto one = waiting_for(*it)) out.push_back(std::move(*one));
   }
   return out;
 }
@@ -148,25 +167,43 @@ void Labels::touch(InstanceId of, BrickSet& touched) const {
   }
 }
 
-BrickSet Labels::bricks_of(InstanceId of) const {
-  BrickSet out;
-  // What was reassigned to it was claimed for another.
+std::set<InstanceId> Labels::with_sources(InstanceId of) const {
   std::vector<InstanceId> open{of};
-  std::set<InstanceId> seen;
+  std::set<InstanceId> out;
   while (!open.empty()) {
     const InstanceId at = open.back();
     open.pop_back();
-    if (!seen.insert(at).second) continue;
-    if (const auto claims = claims_.find(at); claims != claims_.end()) {
-      for (const std::uint32_t step : claims->second) {
-        for (const auto& [index, mask] : steps_[step].bricks) out.insert(index);
-      }
-    }
+    if (!out.insert(at).second) continue;
     if (const auto from = sources_.find(at); from != sources_.end()) {
       open.insert(open.end(), from->second.begin(), from->second.end());
     }
   }
   return out;
+}
+
+BrickSet Labels::bricks_of(InstanceId of) const {
+  BrickSet out;
+  // What was reassigned to it was claimed for another.
+  for (const InstanceId source : with_sources(of)) {
+    const auto claims = claims_.find(source);
+    if (claims == claims_.end()) continue;
+    for (const std::uint32_t step : claims->second) {
+      for (const auto& [index, mask] : steps_[step].bricks) out.insert(index);
+    }
+  }
+  return out;
+}
+
+std::string Labels::asset_of(InstanceId of) const {
+  for (const InstanceId source : with_sources(of)) {
+    const auto claims = claims_.find(source);
+    if (claims == claims_.end()) continue;
+    for (const std::uint32_t step : claims->second) {
+      const std::string& asset = steps_[step].claim.injection.asset;
+      if (!asset.empty() && holder_of(step) == of) return asset;
+    }
+  }
+  return {};
 }
 
 std::optional<InstanceId> Labels::holder_of(std::uint32_t claim) const {
@@ -208,27 +245,27 @@ std::optional<InstanceId> Labels::owner_of(std::uint32_t claim) const {
 }
 
 std::optional<InstanceId> Labels::at(VoxelIndex voxel) const {
+  VoxelMask just_it{};
   const int local = local_of(voxel);
-  for (const Share& share : shares(brick_of(voxel))) {
-    if ((share.voxels[local / 64] >> (local % 64) & 1) != 0) return share.of;
-  }
-  return std::nullopt;
+  just_it[static_cast<std::size_t>(local / 64)] = std::uint64_t{1} << (local % 64);
+  const auto found = shares(brick_of(voxel), just_it);
+  return found.empty() ? std::nullopt : std::optional(found.front().of);
 }
 
-std::vector<Labels::Share> Labels::shares(BrickIndex index) const {
+std::vector<Labels::Share> Labels::shares(BrickIndex index, const VoxelMask& of_these) const {
   const auto claims = by_brick_.find(index);
   if (claims == by_brick_.end()) return {};
   std::map<InstanceId, VoxelMask> by_holder;
-  VoxelMask taken{};
-  for (auto it = claims->second.rbegin(); it != claims->second.rend(); ++it) {
+  VoxelMask open = of_these;  // whose nobody is yet
+  for (auto it = claims->second.rbegin(); it != claims->second.rend() && open != VoxelMask{}; ++it) {
     const auto holder = holder_of(*it);
     if (!holder) continue;
     const auto& bricks = steps_[*it].bricks;
     const auto own = std::ranges::lower_bound(bricks, index, {}, [](const auto& entry) { return entry.first; });
     VoxelMask& mask = by_holder[*holder];
     for (std::size_t word = 0; word < mask.size(); ++word) {
-      mask[word] |= own->second[word] & ~taken[word];
-      taken[word] |= own->second[word];
+      mask[word] |= own->second[word] & open[word];
+      open[word] &= ~own->second[word];
     }
   }
   std::vector<Share> out;

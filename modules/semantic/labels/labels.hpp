@@ -66,6 +66,10 @@ class Labels {
   };
   /// By the ids of the edits; those that merge refused are none.
   [[nodiscard]] std::vector<Injected> injected() const;
+  /// Another after whatever may change that, but for what merge says of the edits.
+  [[nodiscard]] std::int64_t injected_revision() const { return injected_revision_; }
+  /// Voxels of all models that came in the place of others, ever: what moves have spent of kMaxLabelVoxelsEver.
+  [[nodiscard]] std::int64_t moved_voxels() const { return moved_voxels_; }
 
   /// An agent's frame lies there now: the labels on it go along, be they claimed before or after; those of before when
   /// `lay_some` comes to them. What nothing was said of lies where it was claimed.
@@ -102,8 +106,8 @@ class Labels {
   /// Whose a claim is, be its edit there or not; nothing if it is undone or taken off, or no claim.
   [[nodiscard]] std::optional<InstanceId> owner_of(const std::string& claim_id) const;
 
-  /// The instances that are models which lie in the map, and their assets.
-  [[nodiscard]] std::map<InstanceId, std::string> assets() const;
+  /// The asset that it is, if it is a model which lies in the map; else empty.
+  [[nodiscard]] std::string asset_of(InstanceId of) const;
 
   [[nodiscard]] std::optional<InstanceId> at(VoxelIndex voxel) const;
 
@@ -111,8 +115,8 @@ class Labels {
     InstanceId of;
     VoxelMask voxels;
   };
-  /// What is claimed in a brick, by ascending instance; no voxel twice.
-  [[nodiscard]] std::vector<Share> shares(BrickIndex index) const;
+  /// What is claimed of these voxels of a brick, by ascending instance; no voxel twice.
+  [[nodiscard]] std::vector<Share> shares(BrickIndex index, const VoxelMask& of_these) const;
 
   struct Class {
     std::string name;
@@ -157,6 +161,10 @@ class Labels {
   [[nodiscard]] std::optional<InstanceId> holder_of(std::uint32_t step) const;
   [[nodiscard]] std::map<ClassId, std::string> names_if(std::uint32_t step, bool active) const;
   void touch(InstanceId of, BrickSet& touched) const;
+  /// It, and all that was ever reassigned to it.
+  [[nodiscard]] std::set<InstanceId> with_sources(InstanceId of) const;
+  void enter_bricks(std::uint32_t step, BrickSet& touched);
+  void leave_bricks(std::uint32_t step, BrickSet& touched);
   void lay(std::uint32_t step, const Transform& T_map_agent, BrickSet& touched);
   void lay_if_astray(std::uint32_t step, BrickSet& touched);
   [[nodiscard]] bool holds(std::uint32_t step) const;
@@ -172,6 +180,7 @@ class Labels {
   std::map<InstanceId, std::set<InstanceId>> sources_;        ///< what was ever reassigned to it
   std::deque<std::uint32_t> to_lay_;
   std::map<std::string, std::vector<std::uint32_t>> by_edit_;
+  std::set<std::string> unsaid_;  ///< of by_edit_: those that merge has said nothing of
   std::map<std::string, EditState> edits_;
   struct Frame {
     std::vector<std::uint32_t> claims;     ///< on it
@@ -179,9 +188,10 @@ class Labels {
   };
   std::map<std::pair<std::string, std::string>, Frame> frames_;  ///< by agent and frame_id
   std::vector<std::uint32_t> renames_;
-  std::unordered_map<BrickIndex, std::vector<std::uint32_t>, IndexHash> by_brick_;  ///< claims, ascending
+  std::unordered_map<BrickIndex, std::vector<std::uint32_t>, IndexHash> by_brick_;  ///< claims not undone, ascending
   std::size_t instances_ = 0;
-  std::int64_t voxels_ = 0, voxels_ever_ = 0;  ///< of claims that are not undone; of all
+  std::int64_t voxels_ = 0, voxels_ever_ = 0;  ///< of claims not undone that came with no edit; of all
+  std::int64_t bricks_ever_ = 0, moved_voxels_ = 0, injected_revision_ = 0;
 };
 
 }  // namespace concord

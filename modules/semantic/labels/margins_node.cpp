@@ -1,9 +1,7 @@
 #include "semantic/labels/margins_node.hpp"
 
-#include <map>
+#include <bit>
 #include <utility>
-
-#include "semantic/labels/keep_out.hpp"
 
 namespace concord {
 namespace {
@@ -24,23 +22,52 @@ MarginsNode::MarginsNode(const NodeContext& context, const Labels& labels, const
 
 void MarginsNode::tell() {
   begun_ = begun_ || is_whole_();
-  if (!is_stale_ || !begun_) return;
-  is_stale_ = false;
-  std::map<ClassId, std::string> names;
-  for (const auto& [name, terms] : context_.site.classes) {
-    if (const auto label = labels_.class_called(name)) names.emplace(*label, name);
-  }
-  std::vector<KeptClearOf> things;
-  if (!names.empty()) {
-    for (const auto& [of, voxels] : view_.by_instance([&](InstanceId one) { return names.contains(one.label); })) {
-      const std::string& name = names.at(of.label);
-      const auto& terms = context_.site.classes.at(name);
-      const std::string thing = name + " " + std::to_string(of.instance);
-      if (terms.margin > 0.0) things.push_back({thing, voxels, terms.margin});
-      if (terms.cost > 0) things.push_back({"near " + thing, voxels, terms.cost_margin, terms.cost});
+  if (!begun_) return;
+  if (has_new_names_) take_names();
+  for (const auto& [tile, bricks] : touched_.sorted()) {
+    for (std::uint64_t bits = bricks; bits != 0; bits &= bits - 1) {
+      const BrickIndex index = brick_at(tile, std::countr_zero(bits));
+      outlines_.set(index, wanted_in(index));
     }
   }
-  list_.set(keep_out_zones(things, context_.site.resolution));
+  touched_.clear();
+  if (has_told_ && !outlines_.is_stale()) return;
+  has_told_ = true;
+  list_.set(keep_out_zones(things(), context_.site.resolution));
+}
+
+/// Where other classes have terms now, or the same by another name, all begins anew.
+void MarginsNode::take_names() {
+  has_new_names_ = false;
+  std::map<ClassId, std::string> wanted;
+  for (const auto& [name, terms] : context_.site.classes) {
+    if (const auto label = labels_.class_called(name)) wanted.emplace(*label, name);
+  }
+  if (wanted == wanted_) return;
+  wanted_ = std::move(wanted);
+  outlines_.clear();
+  for (const BrickIndex index : view_.shown().sorted_bricks()) touched_.insert(index);
+}
+
+Outlines::InBrick MarginsNode::wanted_in(BrickIndex index) const {
+  Outlines::InBrick out;
+  if (wanted_.empty()) return out;
+  for (const auto& [of, voxels] : view_.in_brick(index)) {
+    if (wanted_.contains(of.label)) out.emplace(of, outline_of(voxels, context_.site.resolution));
+  }
+  return out;
+}
+
+std::vector<KeptClearOf> MarginsNode::things() {
+  std::vector<KeptClearOf> out;
+  for (const auto& [of, outline] : outlines_.all()) {
+    const std::string& name = wanted_.at(of.label);
+    const auto& terms = context_.site.classes.at(name);
+    const std::string thing = name + " " + std::to_string(of.instance);
+    if (terms.margin > 0.0) out.push_back({thing, outline, terms.margin});
+    if (terms.cost > 0) out.push_back({"near " + thing, outline, terms.cost_margin, terms.cost});
+  }
+  return out;
 }
 
 }  // namespace concord

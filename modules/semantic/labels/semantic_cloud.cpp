@@ -146,8 +146,8 @@ constexpr std::size_t kPcdBytes = 24, kPlyBytes = 27, kColourBytes = 3;
 
 }  // namespace
 
-SemanticCloud semantic_cloud(const BrickMap& map, const BrickMap& labels, const std::vector<LabelSlot>& slots,
-                             double resolution) {
+Result<SemanticCloud> semantic_cloud(const BrickMap& map, const BrickMap& labels, const std::vector<LabelSlot>& slots,
+                                     double resolution) {
   SemanticCloud out;
   out.resolution = resolution;
   std::map<std::int32_t, InstanceId> by_slot;
@@ -167,11 +167,11 @@ SemanticCloud semantic_cloud(const BrickMap& map, const BrickMap& labels, const 
     const Eigen::Vector3f p = centre_of(voxel, resolution).cast<float>();
     SemanticPoint point{p.x(), p.y(), p.z(), static_cast<float>(1.0 / (1.0 + std::exp(-to_double(value)))), 0, 0};
     if (const LogOdds label = labels.at(voxel); is_known(label)) {
-      if (const auto it = by_slot.find(slot_of_value(label)); it != by_slot.end()) {
-        point.label = it->second.label;
-        point.instance = it->second.instance;
-        out.classes[point.label] = names.at(point.label);
-      }
+      const auto it = by_slot.find(slot_of_value(label));
+      if (it == by_slot.end()) return refuse(Code::kNotFound, "what is labelled there is not known yet");
+      point.label = it->second.label;
+      point.instance = it->second.instance;
+      out.classes[point.label] = names.at(point.label);
     }
     out.points.push_back(point);
   }

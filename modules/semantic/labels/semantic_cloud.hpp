@@ -31,9 +31,10 @@ struct SemanticCloud {
 
 inline constexpr std::size_t kMaxCloudPoints = 50'000'000;
 
-/// The occupied voxels of a map, and the labels that they show (LabelView::shown).
-[[nodiscard]] SemanticCloud semantic_cloud(const BrickMap& map, const BrickMap& labels,
-                                           const std::vector<LabelSlot>& slots, double resolution);
+/// The occupied voxels of a map, and the labels that they show (LabelView::shown). Refused (kNotFound): a label that no
+/// slot says the meaning of.
+[[nodiscard]] Result<SemanticCloud> semantic_cloud(const BrickMap& map, const BrickMap& labels,
+                                                   const std::vector<LabelSlot>& slots, double resolution);
 
 /// `.pcd` 0.7, DATA binary, little endian; fields x y z probability (F 4) label instance (U 4). Resolution and classes
 /// stand in comments, which PCL passes over.

@@ -10,6 +10,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kMostSiblings = 256;  ///< that are watched: a hostile file may name any number
+
 Result<Bytes> read_file(const fs::path& file) {
   std::error_code error;
   const auto size = fs::file_size(file, error);
@@ -39,7 +41,14 @@ Result<Bytes> read_sibling(const fs::path& folder, const std::string& name) {
 
 }  // namespace
 
-Result<TriangleMesh> read_model_file_here(const fs::path& file) {
+FileState state_of(const fs::path& folder, const std::string& name) {
+  std::error_code none;
+  const auto written = fs::last_write_time(folder / name, none).time_since_epoch().count();
+  const auto bytes = fs::file_size(folder / name, none);
+  return {name, none ? 0 : static_cast<std::int64_t>(written), none ? 0 : static_cast<std::int64_t>(bytes)};
+}
+
+Result<TriangleMesh> read_model_file_here(const fs::path& file, std::vector<FileState>* siblings) {
   std::string kind = file.extension().string();
   if (!kind.empty()) kind.erase(0, 1);
   std::ranges::transform(kind, kind.begin(),
@@ -50,7 +59,13 @@ Result<TriangleMesh> read_model_file_here(const fs::path& file) {
   const auto bytes = read_file(file);
   if (!bytes) return tl::unexpected(bytes.error());
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  auto mesh = read_model(*bytes, kind, [&](const std::string& name) { return read_sibling(folder, name); });
+  auto mesh = read_model(*bytes, kind, [&](const std::string& name) {
+    const FileState before = state_of(folder, name);
+    auto sibling = read_sibling(folder, name);
+    const bool is_new = siblings != nullptr && std::ranges::find(*siblings, name, &FileState::name) == siblings->end();
+    if (sibling && is_new && siblings->size() < kMostSiblings) siblings->push_back(before);
+    return sibling;
+  });
   if (!mesh) return refuse(mesh.error().code, file.string() + ": " + mesh.error().message);
   return mesh;
 }

@@ -1,73 +1,9 @@
-#include <fstream>
-
-#include "semantic_station.hpp"
+#include "asset_station.hpp"
 
 namespace concord {
 namespace {
 
-/// A cube of 1 m as a file, in millimetres, and the folder that says so.
-class AssetsNodeTest : public SemanticStation {
- protected:
-  AssetsNodeTest() {
-    const auto folder = site_.state / "assets";
-    std::filesystem::create_directories(folder);
-    std::ofstream(folder / "assets.yaml")
-        << "cube: {file: cube.obj, class: box, unit: 0.001}\nnone: {file: none.obj}\n";
-    std::ofstream out(folder / "cube.obj");
-    for (int i = 0; i < 8; ++i)
-      out << "v " << (i & 1) * 1000 << " " << (i >> 1 & 1) * 1000 << " " << (i >> 2) * 1000 << "\n";
-    out << "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
-    out.close();
-    run();  // it is looked for each second
-  }
-
-  Answer inject(const std::string& id, const std::string& asset, double x) {
-    Transform T = Transform::Identity();
-    T.translation().x() = x;
-    return ask("in/asset", encode(AssetRequest{id, "eva", AssetRequest::Op::kInject, asset, "", {}, T, 5}));
-  }
-  /// Semantic's word, not merge's on the halves of it.
-  Answer move(const std::string& id, const std::string& of, double x) {
-    Transform T = Transform::Identity();
-    T.translation().x() = x;
-    ask("in/asset", encode(AssetRequest{id, "eva", AssetRequest::Op::kMove, "", of, {}, T, 5}));
-    run();
-    const auto own = std::ranges::find(answers_, id, &Answer::id);
-    return own != answers_.end() ? *own : Answer{};
-  }
-  Answer take_out(const std::string& id, const std::string& of) {
-    return ask("in/asset",
-               encode(AssetRequest{id, "eva", AssetRequest::Op::kDelete, "", of, {}, Transform::Identity(), 5}));
-  }
-  Answer undo_edit(const std::string& id, const std::string& edit, bool redo = false) {
-    const Answer answer = ask("in/undo", encode(UndoRequest{id, "eva", edit, redo, bus_->now()}));
-    run();
-    return answer;
-  }
-  /// What is where a cube at 2 m has its middle, and at 5 m, and at 8 m.
-  [[nodiscard]] std::string places() const {
-    std::string out;
-    for (const std::int32_t x : {25, 55, 85}) out += (is_there(x) ? seen_at(x) : "-") + "|";
-    return out;
-  }
-  /// Somebody holds the cubic metre from there on for ten seconds.
-  bool lease(const std::string& author, double x) {
-    LeaseRequest lease;
-    lease.id = "lease " + author;
-    lease.author = author;
-    lease.lease = "corner";
-    lease.volume = Box{{x, 0, 0}, {x + 1, 1, 1}};
-    lease.utime = bus_->now();
-    return ask("in/lease", encode(lease)).ok;
-  }
-  [[nodiscard]] bool is_there(std::int32_t x) const { return is_occupied(merge_->map().at({x, 5, 5})); }
-  [[nodiscard]] std::string seen_at(std::int32_t x) const {
-    const LogOdds value = heard_.at({x, 5, 5});
-    if (!is_known(value)) return "";
-    const auto slot = std::ranges::find(slots_->items(), slot_of_value(value), &LabelSlot::slot);
-    return slot == slots_->items().end() ? "?" : slot->name + " " + std::to_string(slot->of.instance);
-  }
-};
+using AssetsNodeTest = AssetStation;
 
 TEST_F(AssetsNodeTest, AModelIsOccupiedAndLabelledInsideToo) {
   const Answer answer = inject("a1", "cube", 2.0);
@@ -184,6 +120,50 @@ TEST_F(AssetsNodeTest, AMovedModelIsTakenOutForGoodWhereverItIs) {
   EXPECT_EQ(places(), "-|box 1|-|");
 }
 
+TEST_F(AssetsNodeTest, AnEditThatIsThereAlreadyIsNotTakenForTheInjections) {
+  EditRequest edit;
+  edit.id = "asset-a1";
+  edit.author = "eva";
+  edit.shape = VoxelList{site_.resolution, {{{15, 0, 0}, {15, 0, 0}}}};
+  edit.utime = bus_->now();
+  ASSERT_TRUE(ask("in/edit", encode(edit)).ok);
+  run();
+  EXPECT_EQ(inject("a1", "cube", 2.0).code, "EXISTS");
+  EXPECT_EQ(semantic_->view().slot_count(), 0U);
+  ASSERT_TRUE(inject("a2", "cube", 2.0).ok);
+  run();
+  stop();
+  for (const char* part : {"", "-wal", "-shm"})
+    std::filesystem::remove(site_.state / (std::string("semantic.db") + part));
+  start();
+  EXPECT_EQ(inject("a2", "cube", 5.0).code, "EXISTS") << "the labels were lost, merge has it elsewhere";
+  run();
+  EXPECT_FALSE(is_there(55));
+}
+
+TEST_F(AssetsNodeTest, AnIdOfOneRemovalIsNoOthersAfterARestartToo) {
+  ASSERT_TRUE(inject("a1", "cube", 2.0).ok);
+  ASSERT_TRUE(inject("a2", "cube", 5.0).ok);
+  run();
+  ASSERT_TRUE(take_out("d1", "a1").ok);
+  run();
+  EXPECT_EQ(take_out("d1", "a2").code, "EXISTS");
+  start();
+  EXPECT_EQ(take_out("d1", "a2").code, "EXISTS");
+  EXPECT_TRUE(take_out("d1", "a1").ok);
+  EXPECT_EQ(places(), "-|box 2|-|");
+}
+
+TEST_F(AssetsNodeTest, AModelOfMoreBoxesThanARequestHasIsRefusedInWords) {
+  std::ofstream out(site_.state / "assets/cube.obj");  // a thin panel that leans both ways
+  out << "v 0 0 0\nv 44000 0 19000\nv 44000 44000 42000\nv 0 44000 23000\nf 1 2 3\nf 1 3 4\n";
+  out.close();
+  const Answer answer = inject("a1", "cube", 2.0);
+  EXPECT_EQ(answer.code, "TOO_LARGE");
+  EXPECT_NE(answer.message.find("scattered"), std::string::npos) << answer.message;
+  EXPECT_EQ(semantic_->view().slot_count(), 0U);
+}
+
 TEST_F(AssetsNodeTest, AMoveThatMayNotLeaveItsOldPlaceIsUndone) {
   ASSERT_TRUE(inject("a1", "cube", 2.0).ok);
   ASSERT_TRUE(lease("bob", 2.0));
@@ -252,49 +232,6 @@ TEST_F(AssetsNodeTest, RefusesAModelThatFillsTooMuchBeforeItTakesMemory) {
   const Answer answer = inject("a1", "cube", 2.0);
   EXPECT_EQ(answer.code, "TOO_LARGE") << answer.message;
   EXPECT_NE(answer.message.find("500000"), std::string::npos) << answer.message;
-}
-
-TEST_F(AssetsNodeTest, ABadLineHidesNoOtherAssetAndIsCountedOnce) {
-  std::vector<Asset> heard;
-  ListReceiver<Asset> list(*bus_, counters_, "out/assets", [&](const std::vector<Asset>& all) { heard = all; });
-  std::ofstream(site_.state / "assets/assets.yaml")
-      << "cube: {file: cube.obj, class: box, unit: 0.001}\nbad: {file: ../etc}\nworse: {unit: twelve}\nnone: 7\n";
-  run(10'000'000);
-  ASSERT_EQ(heard.size(), 1U);
-  EXPECT_EQ(heard[0].name, "cube");
-  EXPECT_EQ(counters_.get("refused.assets.BAD_NAME"), 2) << "one file outside, and one that needs one";
-  EXPECT_EQ(counters_.get("refused.assets.MALFORMED"), 1);
-  std::ofstream(site_.state / "assets/assets.yaml") << "cube: {file: cube.obj";
-  run();
-  EXPECT_EQ(heard.size(), 1U) << "what it was, until it is one again";
-  EXPECT_EQ(counters_.get("refused.assets.MALFORMED"), 2);
-}
-
-TEST_F(AssetsNodeTest, AGltfIsMadeOnceAndOfWhatTheModelIs) {
-  const auto file = site_.state / "assets/gltf/cube.glb";
-  const auto assets = site_.state / "assets/assets.yaml";
-  ASSERT_TRUE(std::filesystem::exists(file));
-  const auto made = std::filesystem::last_write_time(file);
-  start();
-  run();
-  EXPECT_EQ(std::filesystem::last_write_time(file), made) << "it is not made again";
-  std::vector<Asset> heard;
-  ListReceiver<Asset> list(*bus_, counters_, "out/assets", [&](const std::vector<Asset>& all) { heard = all; });
-  run();
-  ASSERT_EQ(heard.size(), 2U);
-  EXPECT_EQ(heard[0].gltf_bytes, static_cast<std::int64_t>(std::filesystem::file_size(file)));
-  EXPECT_NEAR(heard[0].size.x(), 1.0, 1e-9);
-  std::ofstream(site_.state / "assets/other.obj") << "v 0 0 0\nv 3000 0 0\nv 0 1000 0\nf 1 2 3\n";
-  std::ofstream(assets) << "cube: {file: other.obj, class: box, unit: 0.001}\n";
-  run();
-  ASSERT_EQ(heard.size(), 1U);
-  EXPECT_NEAR(heard[0].size.x(), 3.0, 1e-9);
-  std::filesystem::remove(file);
-  run();
-  EXPECT_TRUE(std::filesystem::exists(file)) << "somebody removed it";
-  std::ofstream(assets) << "{}\n";
-  run();
-  EXPECT_FALSE(std::filesystem::exists(file));
 }
 
 TEST_F(AssetsNodeTest, AKillBetweenTheTwoHalvesOfAMoveLosesNothing) {

@@ -166,6 +166,36 @@ TEST_F(DetectionsNodeTest, WhoSeesItOffDoesNotDragItOffItsSurface) {
   EXPECT_EQ(things().at(0).T_map_asset.translation().x(), there) << "after a restart";
 }
 
+TEST_F(DetectionsNodeTest, APersonsMoveStandsThoughSightingsCalledForAnotherJustBefore) {
+  see(2.0, 0.9, "target 7");
+  ASSERT_TRUE(decide("c1", 1).ok);
+  run();
+  // All in one tick: the sightings' move is being laid out when the person's comes.
+  answers_.clear();
+  for (int i = 0; i < 3; ++i) {
+    const Detection seen{"w" + std::to_string(i), "hmd", "crate", "target 7", 0.9, at(6.0), {}, bus_->now()};
+    bus_->publish("in/detection", encode(seen));
+  }
+  AssetRequest move{"m1", "eva", AssetRequest::Op::kMove, "", "c1", {}, at(9.0), bus_->now()};
+  bus_->publish("in/asset", encode(move));
+  for (int i = 0; i < 5; ++i) {
+    bus_->publish("in/asset", encode(move));  // who is busy is asked again
+    run(1'000'000);
+  }
+  EXPECT_TRUE(is_there(9.0));
+  EXPECT_FALSE(is_there(6.0));
+}
+
+TEST_F(DetectionsNodeTest, WhatAPersonDroppedIsNotProposedAgain) {
+  see(2.0);
+  ASSERT_TRUE(decide("d1", 1, DetectionDecision::Op::kDrop).ok);
+  const Answer again = see(2.1);
+  EXPECT_TRUE(again.ok);
+  EXPECT_NE(again.message.find("dropped"), std::string::npos) << again.message;
+  EXPECT_TRUE(things().empty());
+  EXPECT_EQ(decide("c1", 1).code, "NOT_FOUND");
+}
+
 TEST_F(DetectionsNodeTest, WhatMayNotBeMovedIsNotTriedAgainAndAgain) {
   see(2.0, 0.9, "target 7");
   ASSERT_TRUE(decide("c1", 1).ok);

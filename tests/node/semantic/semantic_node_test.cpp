@@ -85,6 +85,27 @@ TEST_F(SemanticNodeTest, ADeletionAskedAgainIsAnsweredAlikeAfterARestartToo) {
   EXPECT_EQ(change("d2", Op::kDelete, {1, 1}).code, "EMPTY");
 }
 
+TEST_F(SemanticNodeTest, AnIdOfOneDeletionIsNoOthersAfterARestartToo) {
+  ASSERT_TRUE(label("l1", "chair", 0, 3).ok);
+  ASSERT_TRUE(label("l2", "table", 4, 7).ok);
+  ASSERT_TRUE(change("d1", Op::kDelete, {1, 1}).ok);
+  run();
+  EXPECT_EQ(change("d1", Op::kDelete, {2, 1}).code, "EXISTS");
+  start();
+  EXPECT_EQ(change("d1", Op::kDelete, {2, 1}).code, "EXISTS");
+  EXPECT_TRUE(change("d1", Op::kDelete, {1, 1}).ok);
+  EditRequest edit;
+  edit.id = "e1";
+  edit.author = "eva";
+  edit.op = EditRequest::Op::kDelete;
+  edit.shape = VoxelList{site_.resolution, {{{15, 0, 0}, {15, 0, 0}}}};
+  edit.utime = bus_->now();
+  ASSERT_TRUE(ask("in/edit", encode(edit)).ok);
+  run();
+  EXPECT_EQ(change("e1", Op::kDelete, {2, 1}).code, "EXISTS") << "a plain edit has it";
+  EXPECT_EQ(seen(4), "table 1");
+}
+
 TEST_F(SemanticNodeTest, TakingALabelOffLeavesTheVoxels) {
   ASSERT_TRUE(label("l1", "chair", 0, 3).ok);
   ASSERT_TRUE(change("o1", Op::kTakeOff, {1, 1}).ok);

@@ -313,5 +313,45 @@ TEST(Labels, WhatIsUndoneLeavesRoomForOthers) {
   EXPECT_TRUE(world.undo("r1", true));
 }
 
+TEST(Labels, VoxelsThatStandApartAreBoundedByTheBricksThatTheyTake) {
+  World world;
+  std::int64_t bricks = 0;
+  const auto scattered = [](std::int32_t z) {
+    std::vector<VoxelIndex> out;
+    for (std::int32_t x = 0; x < 700; ++x) {
+      for (std::int32_t y = 0; y < 700; ++y) out.push_back({8 * x, 8 * y, 8 * z});
+    }
+    return out;
+  };
+  std::int32_t z = 0;
+  for (; bricks + 700 * 700 <= kMaxLabelBricks; bricks += 700 * 700) ASSERT_TRUE(world.label("dust", scattered(z++)));
+  ASSERT_TRUE(world.undo("r1"));
+  EXPECT_EQ(world.label("dust", scattered(z)).error().code, Code::kTooLarge) << "undone ones can come back";
+  std::vector<VoxelIndex> block;
+  for (std::int32_t i = 0; i < 8 * 8 * 8 * 800; ++i) block.push_back(voxel_at({i / 512, -1, 0}, i % 512));
+  std::ranges::sort(block);
+  EXPECT_TRUE(world.label("block", block)) << "as many voxels, in few bricks";
+}
+
+TEST(Labels, ModelsThatMoveTakeNoRoomFromLabelsOfPeople) {
+  World world;
+  BrickSet touched;
+  std::vector<VoxelIndex> block;
+  for (std::int32_t i = 0; i < 500'000; ++i) block.push_back(voxel_at({i / 512, 0, 0}, i % 512));
+  std::ranges::sort(block);
+  for (int i = 1; i <= 110; ++i) {
+    const std::string edit = "asset-m" + std::to_string(i), before = i > 1 ? "asset-m" + std::to_string(i - 1) : "";
+    const LabelCorrection::Claim claim{
+        {1, 1}, i == 1 ? "lift" : "", block, edit, {}, {"lift", Transform::Identity(), before}};
+    world.labels.apply({i, "m" + std::to_string(i), "eva", 0, 1, claim}, touched);
+  }
+  EXPECT_EQ(world.labels.moved_voxels(), 109 * 500'000);
+  EXPECT_EQ(world.labels.waiting(1).at(0).edit_id, "asset-m1");
+  world.labels.set_edit("asset-m1", {true, 1, false}, touched);
+  EXPECT_EQ(world.labels.waiting(1).at(0).edit_id, "asset-m10") << "just what merge has said nothing of";
+  EXPECT_EQ(world.labels.asset_of({1, 1}), "lift");
+  EXPECT_TRUE(world.label("box", row(0, 3, -9)));
+}
+
 }  // namespace
 }  // namespace concord

@@ -26,7 +26,7 @@ SemanticCloud sample() {
   map.set({9, 9, 9}, Brick::uniform({7, 0, 0, 0, 0, 0, 0, 0}, kFree));
   labels.set({0, 0, 0}, Brick::uniform({0xF, 0, 0, 0, 0, 0, 0, 0}, value_of_slot(0)));
   labels.set({-5, 2, -1}, Brick::uniform({2, 0, 0, 0, 0, 0, 0, 0}, value_of_slot(65'534)));
-  return semantic_cloud(map, labels, {{0, {3, 1}, "chair"}, {65'534, {4'000'000, 77}, "Tür, 2. Stock"}}, 0.05);
+  return *semantic_cloud(map, labels, {{0, {3, 1}, "chair"}, {65'534, {4'000'000, 77}, "Tür, 2. Stock"}}, 0.05);
 }
 
 TEST(SemanticCloud, HoldsEachOccupiedVoxelWithItsLabel) {

@@ -99,9 +99,64 @@ TEST_F(SightingsTest, WhatIsNotMovedIsTriedLessAndLessOften) {
   }
   EXPECT_GE(tried, 10);
   EXPECT_LE(tried, 20);
-  sightings_.put(1, "a1", at(6.0));  // it was
-  for (int i = 0; i < 2; ++i) EXPECT_FALSE(see(at(9.0), "t").moved_to);
-  EXPECT_TRUE(see(at(9.0), "t").moved_to);
+}
+
+TEST_F(SightingsTest, WhatIsAlwaysOnItsWayIsMovedLessAndLessOftenUntilItLiesStillForLong) {
+  see(at(0), "lift");
+  sightings_.put(1, "a1", at(0));
+  int moves = 0;
+  const auto drive = [&](std::int64_t seconds) {
+    for (std::int64_t second = 0; second < seconds; ++second) {
+      now_ += 1'000'000;
+      const auto seen = see(at(static_cast<double>(now_ / 20'000'000 % 2 * 9)), "lift");
+      if (!seen.moved_to) continue;
+      ++moves;
+      sightings_.put(1, "a1", *seen.moved_to);
+    }
+  };
+  drive(8 * 3600);
+  EXPECT_GE(moves, 10);
+  EXPECT_LE(moves, 10 + 8);
+  now_ += 2 * Sightings::kLongestPause;
+  const int before = moves;
+  drive(60);
+  EXPECT_GE(moves, before + 2) << "the next morning";
+}
+
+TEST_F(SightingsTest, WhatWasDroppedIsNotToldOfUntilNobodySawItForLong) {
+  ASSERT_EQ(see(at(1.0)).number, 1);
+  sightings_.drop(1);
+  EXPECT_TRUE(sightings_.list().empty());
+  EXPECT_EQ(sightings_.find(1), nullptr);
+  for (int i = 0; i < 100; ++i) {
+    now_ += Sightings::kDroppedFor / 2;
+    sightings_.forget_dropped(now_);
+    const auto seen = see(at(1.1));
+    EXPECT_TRUE(seen.is_dropped);
+    EXPECT_EQ(seen.number, 1) << "and it spends no number";
+  }
+  EXPECT_EQ(see(at(3.0)).number, 2) << "another";
+  now_ += Sightings::kDroppedFor + 1;
+  sightings_.forget_dropped(now_);
+  const auto again = see(at(1.0));
+  EXPECT_EQ(again.number, 3);
+  EXPECT_TRUE(again.is_new);
+}
+
+TEST_F(SightingsTest, AClockThatIsWrongKeepsNothingAlive) {
+  Detection ahead;
+  ahead.utime = std::int64_t{1} << 60;
+  for (std::size_t i = 0; i < kMaxThings; ++i) {
+    now_ = static_cast<std::int64_t>(i) + 1;
+    if (i < 500) {
+      ASSERT_TRUE(sightings_.see(ahead, "chair", "chair", at(10.0 * static_cast<double>(i)), now_));
+    } else {
+      see(at(10.0 * static_cast<double>(i)));
+    }
+  }
+  EXPECT_TRUE(see(at(-10)).is_new);
+  EXPECT_EQ(sightings_.find(1), nullptr) << "seen first by our clock";
+  EXPECT_NE(sightings_.find(501), nullptr);
 }
 
 TEST_F(SightingsTest, NamesOfFollowersAreBounded) {
