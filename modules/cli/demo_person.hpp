@@ -11,7 +11,8 @@
 
 namespace concord {
 
-/// The person of a demo, who works through the headsets' bridge as everybody does.
+/// The person of a demo, who works through the headsets' bridge as everybody does, and comes in again after a restart
+/// of it.
 class DemoPerson {
  public:
   using Step = tl::expected<void, Failure>;
@@ -27,13 +28,15 @@ class DemoPerson {
   [[nodiscard]] Step add(std::span<const VoxelIndex> voxels, double resolution);
 
  private:
-  DemoPerson(Live& live, std::string page, std::unique_ptr<hmd::BridgeClient> client)
-      : live_(live), page_(std::move(page)), client_(std::move(client)) {}
+  DemoPerson(Live& live, std::string name) : live_(live), name_(std::move(name)) {}
 
-  /// Waits for the answer to a request.
-  [[nodiscard]] Step done(std::int64_t id);
+  [[nodiscard]] Step come_in();
+  /// Asks, and waits for the answer; where the bridge ends meanwhile, of the next one.
+  template <class Request>
+  [[nodiscard]] Step ask(const Request& request);
 
   Live& live_;
+  std::string name_;
   std::string page_;
   std::unique_ptr<hmd::BridgeClient> client_;
   std::shared_ptr<bool> here_ = std::make_shared<bool>(true);  ///< ends what is done each while
