@@ -36,7 +36,7 @@ tl::expected<Shape, Failure> touched(Live& live, std::optional<StreamCopy>& map,
   StreamCopy& copy = map.emplace(live, "out/map");
   if (const auto synced = copy.wait_synced(live); !synced) return tl::unexpected(synced.error());
   const double resolution = live.site().resolution;
-  const auto proposal = propose_object(occupied_of(copy.map()), resolution, *p);
+  const auto proposal = propose_object(occupied_around(copy.map(), reach_of_touch(*p, resolution)), resolution, *p);
   if (!proposal) return fail(proposal.error());
   return VoxelList{resolution, to_boxes(proposal->voxels.voxels())};
 }

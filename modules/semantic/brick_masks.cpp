@@ -105,6 +105,34 @@ BrickMasks occupied_of(const BrickMap& map) {
   return out;
 }
 
+BrickMasks occupied_around(const BrickMap& map, const VoxelBox& box) {
+  const BrickIndex first = brick_of(box.min), last = brick_of(box.max);
+  BrickMasks out;
+  const auto take = [&](BrickIndex index, const Brick& brick) {
+    const VoxelMask occupied = brick.occupied();
+    if (occupied != VoxelMask{}) out.insert(index, occupied);
+  };
+  const auto side = [](std::int32_t from, std::int32_t to) { return std::int64_t{to} - from + 1; };
+  const std::int64_t bricks = side(first.x, last.x) * side(first.y, last.y) * side(first.z, last.z);
+  if (bricks > static_cast<std::int64_t>(map.brick_count())) {
+    map.for_each_brick([&](BrickIndex index, const Brick& brick) {
+      const auto is_in = [](std::int32_t at, std::int32_t from, std::int32_t to) { return at >= from && at <= to; };
+      if (is_in(index.x, first.x, last.x) && is_in(index.y, first.y, last.y) && is_in(index.z, first.z, last.z)) {
+        take(index, brick);
+      }
+    });
+    return out;
+  }
+  for (BrickIndex at = first; at.x <= last.x; ++at.x) {
+    for (at.y = first.y; at.y <= last.y; ++at.y) {
+      for (at.z = first.z; at.z <= last.z; ++at.z) {
+        if (const Brick* brick = map.find(at); brick != nullptr) take(at, *brick);
+      }
+    }
+  }
+  return out;
+}
+
 BrickMasks masks_of(const std::vector<VoxelIndex>& voxels) {
   BrickMasks out;
   for (const VoxelIndex voxel : voxels) out.insert(voxel);

@@ -59,6 +59,8 @@ class BrickMasks {
 [[nodiscard]] std::optional<VoxelBox> bounds_of(const BrickMasks& voxels);
 /// The occupied voxels of a map.
 [[nodiscard]] BrickMasks occupied_of(const BrickMap& map);
+/// Those of the bricks that a box meets: costs the box or the map, whichever is less.
+[[nodiscard]] BrickMasks occupied_around(const BrickMap& map, const VoxelBox& box);
 /// The voxels of a list, in any order.
 [[nodiscard]] BrickMasks masks_of(const std::vector<VoxelIndex>& voxels);
 

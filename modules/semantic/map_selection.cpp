@@ -39,7 +39,8 @@ Result<std::vector<VoxelIndex>> MapSelection::touched(const Shape& shape, const 
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (const VoxelIndex v : *voxels) middle += centre_of(v, resolution_);
   middle /= static_cast<double>(voxels->size());
-  return propose_object(occupied_of(map_), resolution_, middle).map([](const Proposal& proposal) {
+  const BrickMasks around = occupied_around(map_, reach_of_touch(middle, resolution_));
+  return propose_object(around, resolution_, middle).map([](const Proposal& proposal) {
     return proposal.voxels.voxels();
   });
 }

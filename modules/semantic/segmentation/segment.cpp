@@ -96,6 +96,14 @@ BrickMasks cluster(const BrickMasks& candidates, VoxelIndex seed, int reach) {
 
 }  // namespace
 
+VoxelBox reach_of_touch(const Eigen::Vector3d& p_map, double resolution) {
+  const double farthest = (kMaxVoxel - 1) * resolution;
+  const Eigen::Vector3d p = p_map.cwiseMax(-farthest).cwiseMin(farthest);
+  const VoxelIndex seed = voxel_of(p, resolution);
+  const int reach = voxels_in(kSegmentReach, resolution);
+  return {{seed.x - reach, seed.y - reach, seed.z - reach}, {seed.x + reach, seed.y + reach, seed.z + reach}};
+}
+
 Result<Proposal> propose_object(const BrickMasks& occupied, double resolution, const Eigen::Vector3d& p_map) {
   if (!p_map.allFinite() || p_map.cwiseAbs().maxCoeff() > (kMaxVoxel - 1) * resolution) {
     return refuse(Code::kOutOfBounds, "the seed lies beyond any map");

@@ -83,6 +83,23 @@ TEST(Segment, TouchingAWallFarFromAllProposesNothing) {
   EXPECT_EQ(propose_object(Room().all(), kResolution, {1e9, 0, 0}).error().code, Code::kOutOfBounds);
 }
 
+TEST(Segment, WhatLiesInReachIsAllThatATouchLooksAt) {
+  BrickMap map = Room().all().to_map(kOccupied);
+  const Eigen::Vector3d seed(1.2, 1.2, 0.74);
+  const auto alone = propose_object(occupied_of(map), kResolution, seed);
+  // Far away is much, then little: the box is less than the map, then the other way round.
+  for (const int far : {200, 8000}) {
+    map.set({far, 0, 0}, Brick::uniform(VoxelMask{1}, kOccupied));
+    for (int i = 0; far == 200 && i < 30'000; ++i) {
+      map.set({200 + i % 200, i / 200, 3}, Brick::uniform(VoxelMask{1}, kOccupied));
+    }
+    const BrickMasks around = occupied_around(map, reach_of_touch(seed, kResolution));
+    EXPECT_EQ(around.sorted(), Room().all().sorted());
+    EXPECT_EQ(propose_object(around, kResolution, seed)->voxels.sorted(), alone->voxels.sorted());
+    if (far == 200) map = Room().all().to_map(kOccupied);
+  }
+}
+
 TEST(Segment, IsTheSameEachTime) {
   const Room room;
   const auto a = propose_object(room.all(), kResolution, {1.8, 1.3, 1.0});
