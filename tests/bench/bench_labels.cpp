@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "semantic/labels/keep_out.hpp"
 #include "semantic/labels/label_view.hpp"
 #include "semantic/semantic_store.hpp"
 
@@ -85,10 +86,30 @@ class World {
     LabelRequest other;
     other.name = "other";
     (void)ask(other, block(next_), false);
-    const std::uint32_t last = labels_.classes().at(1).instances;
+    const std::uint32_t last = labels_.classes().at(1).highest();
     for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(many); ++i) {
       (void)change(LabelRequest::Op::kReassign, {1, last - i}, "other");
     }
+  }
+  /// Milliseconds that it takes to say the zones around all that shows, and again when one brick of it has changed.
+  [[nodiscard]] std::pair<double, double> keep_clear() const {
+    Outlines outlines;
+    const auto zones = [&](const std::vector<BrickIndex>& changed, double margin) {
+      const auto start = Clock::now();
+      for (const BrickIndex index : changed) {
+        Outlines::InBrick now;
+        for (const auto& [of, voxels] : view_.in_brick(index)) now.emplace(of, outline_of(voxels, 0.05));
+        outlines.set(index, std::move(now));
+      }
+      std::vector<KeptClearOf> things;
+      for (const auto& [of, outline] : outlines.all()) things.push_back({std::to_string(of.instance), outline, margin});
+      if (keep_out_zones(things, 0.05).empty()) throw std::runtime_error("nothing shows");
+      return 1e-3 * microseconds_since(start);
+    };
+    const auto bricks = view_.shown().sorted_bricks();
+    const double all = zones(bricks, 0.5);
+    outlines.set(bricks.front(), {});
+    return {all, zones({bricks.front()}, 0.5)};
   }
   /// Milliseconds that it takes to take off all of a class.
   double take_off_class() { return 1e-3 * change(LabelRequest::Op::kTakeOff, {1, 0}); }
@@ -147,6 +168,10 @@ nlohmann::json after_many_changes() {
   World world(10'000, 1);
   nlohmann::json out;
   out["within_ms"] = world.within();
+  const auto [all_zones, changed_zones] = world.keep_clear();
+  out["zones_ms"] = all_zones;
+  out["zones_after_a_change_ms"] = changed_zones;
+  std::printf("zones around all of them: %.1f ms, after a brick changed %.1f ms\n", all_zones, changed_zones);
   world.take_off_and_label(9'000);
   out["within_after_take_offs_ms"] = world.within();
   world.reassign(5'000);
