@@ -228,7 +228,7 @@ TEST_F(AssetsNodeTest, ItsOldPlaceRedoneIsWhereItIsAndOneDeleteTakesItOut) {
 TEST_F(AssetsNodeTest, WhatComesWithALoadedMapShowsThoughMergeHasItsEditAlready) {
   ASSERT_TRUE(inject("a1", "cube", 2.0).ok);
   run();
-  const MapRequest save{"s1", MapRequest::Op::kSave, "hall", "concord", false, ""};
+  const MapRequest save{"s1", MapRequest::Op::kSave, "hall", {"concord"}, false, ""};
   Answer saved = ask("in/map_request", encode(save, bus_->now()));
   if (saved.code == "BUSY") saved = ask("in/map_request", encode(save, bus_->now()));
   ASSERT_TRUE(saved.ok) << saved.message;
@@ -237,7 +237,7 @@ TEST_F(AssetsNodeTest, WhatComesWithALoadedMapShowsThoughMergeHasItsEditAlready)
     std::filesystem::remove(site_.state / (std::string("semantic.db") + part));
   start();
   EXPECT_EQ(places(), "|-|-|") << "there, but nobody knows what it is";
-  ask("in/map_request", encode(MapRequest{"o1", MapRequest::Op::kLoad, "hall", "concord", false, ""}, bus_->now()));
+  ask("in/map_request", encode(MapRequest{"o1", MapRequest::Op::kLoad, "hall", {"concord"}, false, ""}, bus_->now()));
   ask("out/answer", encode(Answer{"o1", "merge", true, "OK", "", 9, 3}, bus_->now()));
   int edits = 0;
   bus_->subscribe("in/edit", [&edits](const std::string&, auto) { ++edits; });
