@@ -271,11 +271,18 @@ Result<void> Labels::follows(const LabelCorrection& correction) const {
   return std::visit(Follow{*this}, correction.what);
 }
 
-std::map<InstanceId, std::string> Labels::assets() const {
-  std::map<InstanceId, std::string> out;
+std::map<InstanceId, Injection> Labels::assets() const {
+  std::map<InstanceId, Injection> out;
+  std::map<InstanceId, std::int64_t> since;
   for (const auto& [edit_id, steps] : by_edit_) {
     const std::uint32_t step = steps.front();
-    if (const auto of = holder_of(step)) out[*of] = steps_[step].claim.injection.asset;
+    const auto of = holder_of(step);
+    if (!of) continue;
+    const std::int64_t revision = edits_.at(edit_id).revision;
+    const auto [before, is_first] = since.try_emplace(*of, revision);
+    if (!is_first && revision < before->second) continue;
+    before->second = revision;
+    out[*of] = steps_[step].claim.injection;
   }
   return out;
 }

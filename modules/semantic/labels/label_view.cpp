@@ -63,8 +63,7 @@ std::vector<VoxelIndex> LabelView::voxels_of(InstanceId of) const {
 LabelInstance LabelView::instance(InstanceId of) const { return summary(of, voxels_of(of)); }
 
 LabelInstance LabelView::summary(InstanceId of, const std::vector<VoxelIndex>& voxels) const {
-  LabelInstance out{
-      of, labels_.classes().at(of.label).name, static_cast<std::int64_t>(voxels.size()), {}, {}, {0, 0, 0}, ""};
+  LabelInstance out{of, labels_.classes().at(of.label).name, static_cast<std::int64_t>(voxels.size()), {}, {}};
   if (voxels.empty()) return out;
   out.min = out.max = voxels.front();
   std::array<std::int64_t, 3> sum{};
@@ -141,7 +140,10 @@ Result<std::vector<LabelInstance>> LabelView::answer(const LabelQuery& query) co
   if (!out || out->empty()) return out;
   const auto assets = labels_.assets();
   for (LabelInstance& one : *out) {
-    if (const auto it = assets.find(one.of); it != assets.end()) one.asset = it->second;
+    const auto it = assets.find(one.of);
+    if (it == assets.end()) continue;
+    one.asset = it->second.asset;
+    one.T_map_asset = it->second.T_map_asset;
   }
   return out;
 }
@@ -152,7 +154,7 @@ Result<std::vector<LabelInstance>> LabelView::found(const LabelQuery& query) con
   if (query.kind == Kind::kWithin) return within(query);
   if (query.kind == Kind::kClasses) {
     for (const auto& [label, of_class] : labels_.classes()) {
-      out.push_back({{label, 0}, of_class.name, 0, {}, {}, {0, 0, 0}, ""});
+      out.push_back({{label, 0}, of_class.name, 0, {}, {}});
     }
     return out;
   }

@@ -102,8 +102,8 @@ class Labels {
   /// Whose a claim is, be its edit there or not; nothing if it is undone or taken off, or no claim.
   [[nodiscard]] std::optional<InstanceId> owner_of(const std::string& claim_id) const;
 
-  /// The instances that are models which lie in the map, and their assets.
-  [[nodiscard]] std::map<InstanceId, std::string> assets() const;
+  /// The instances that are models which lie in the map, and where: of one on its way, where it was put last.
+  [[nodiscard]] std::map<InstanceId, Injection> assets() const;
 
   [[nodiscard]] std::optional<InstanceId> at(VoxelIndex voxel) const;
 

@@ -50,6 +50,11 @@ class AssetsNodeTest : public SemanticStation {
     for (const std::int32_t x : {25, 55, 85}) out += (is_there(x) ? seen_at(x) : "-") + "|";
     return out;
   }
+  /// Where the only model lies, as who asks what there is is told.
+  [[nodiscard]] double told_x() const {
+    const auto all = semantic_->view().answer({"q", LabelQuery::Kind::kAll, "", {0, 0, 0}, 0});
+    return all && all->size() == 1 ? all->front().T_map_asset.translation().x() : NAN;
+  }
   /// Somebody holds the cubic metre from there on for ten seconds.
   bool lease(const std::string& author, double x) {
     LeaseRequest lease;
@@ -151,16 +156,19 @@ TEST_F(AssetsNodeTest, AModelIsMovedAsOneThingAndKeepsItsName) {
   ASSERT_TRUE(answer.ok) << answer.message;
   run();
   EXPECT_EQ(places(), "-|box 1|-|");
+  EXPECT_EQ(told_x(), 5.0);
   ASSERT_TRUE(move("m2", "a1", 8.0).ok);
   move("m1", "a1", 5.0);  // an old copy does nothing
   run();
   EXPECT_EQ(places(), "-|-|box 1|");
   start();
   EXPECT_EQ(places(), "-|-|box 1|");
+  EXPECT_EQ(told_x(), 8.0);
   ASSERT_TRUE(undo_edit("u1", "asset-m2").ok);
   EXPECT_EQ(places(), "-|box 1|-|");
   ASSERT_TRUE(undo_edit("u2", "asset-m1").ok);
   EXPECT_EQ(places(), "box 1|-|-|");
+  EXPECT_EQ(told_x(), 2.0);
   ASSERT_TRUE(undo_edit("u3", "asset-m1", true).ok);
   EXPECT_EQ(places(), "-|box 1|-|");
   start();

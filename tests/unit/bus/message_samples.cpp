@@ -225,7 +225,7 @@ const std::vector<MessageSample>& message_samples() {
       sample("label_query_t", LabelQuery{"n-2", LabelQuery::Kind::kWithin, "chair", {1, 2, -3}, 4.5}),
       sample("label_list_t",
              LabelList{
-                 "n-2", 1, 2, {{{3, 1}, "chair", 50, {-4, 0, 0}, {9, 9, 9}, {0.5, 1, 2}, "pallet"}}}),
+                 "n-2", 1, 2, {{{3, 1}, "chair", 50, {-4, 0, 0}, {9, 9, 9}, {0.5, 1, 2}, "pallet", some_transform()}}}),
       sample("label_slots_t", ListPart<LabelSlot>{7, 0, 1, {{0, {3, 1}, "chair"}, {65'534, {9, 2}, "Tür"}}, {}}),
       sample("list_digest_t", ListDigest{0xFFEEDDCCBBAA9988, 3}),
       sample("list_request_t", ListRequest{0xFFEEDDCCBBAA9988}),
