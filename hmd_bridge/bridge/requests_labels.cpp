@@ -110,8 +110,11 @@ void work_on(Desk& desk, const Ask& ask, const InstancesRequest& request) {
     for (const LabelInstance& one : all) {
       if (answer.instances.size() >= static_cast<std::size_t>(most)) break;
       const auto [min, max] = corners_of(one, desk.context.site.resolution);
-      Instance instance{one.of.label, one.of.instance, one.name, one.voxels, min, max, {}};
-      if (!one.asset.empty()) instance.asset = one.asset;
+      Instance instance{one.of.label, one.of.instance, one.name, one.voxels, min, max, {}, {}};
+      if (!one.asset.empty()) {
+        instance.asset = one.asset;
+        instance.T_map_asset = to_hmd(one.T_map_asset);
+      }
       answer.instances.push_back(std::move(instance));
     }
     desk.hub.answer(ask, answer);

@@ -1,7 +1,6 @@
 // Requests about saved maps.
 
 #include <cstdio>
-#include <memory>
 
 #include "bridge/requests.hpp"
 #include "core/text.hpp"
@@ -19,34 +18,20 @@ Code load_code(const std::string& code) {
   return code_of(code);
 }
 
-/// Formats are saved one after the other; the first that is refused ends it.
-struct SaveRun {
-  SaveRequest request;
-  SaveAnswer answer;
-};
-
-void run_save(Desk& desk, const Ask& ask, const std::shared_ptr<SaveRun>& run) {
-  const std::size_t step = run->answer.files.size();
-  if (step == run->request.formats.size()) return desk.hub.answer(ask, run->answer);
-  const std::string format = text_of(run->request.formats[step]);
-  const MapRequest save{desk.id(ask) + "-" + format,
-                        MapRequest::Op::kSave,
-                        run->request.map,
-                        format,
-                        run->request.overwrite,
-                        "",
-                        desk.now()};
-  Asker::Question question{"in/map_request", encode(save, desk.now()), save.id, {}, {}, kSavePatience};
-  desk.asker.ask(std::move(question), [&desk, ask, run, format](const Answer& answer) {
-    if (!answer.ok) return desk.hub.refuse(ask, code_of(answer.code), answer.message);
-    run->answer.files.push_back({run->request.map + "." + format, answer.count});
-    run_save(desk, ask, run);
-  });
+SaveAnswer saved(const MapRequest& save, const Answer& answer) {
+  SaveAnswer out;
+  for (std::size_t i = 0; i < save.formats.size() && i < answer.parts.size(); ++i) {
+    out.files.push_back({save.map + "." + save.formats[i], answer.parts[i]});
+  }
+  char hash[17];
+  std::snprintf(hash, sizeof(hash), "%016llx", static_cast<unsigned long long>(answer.content));
+  out.content = hash;
+  return out;
 }
 
 /// Asks merge which files there are, and goes on with what it says.
 void list_maps(Desk& desk, const Ask& ask, const std::string& id, std::function<void(const MapList&)> then) {
-  const MapRequest list{id, MapRequest::Op::kList, "", "", false, "", desk.now()};
+  const MapRequest list{id, MapRequest::Op::kList, "", {}, false, "", desk.now()};
   desk.maps.erase(id);
   desk.watched.insert(id);
   desk.asker.ask({"in/map_request", encode(list, desk.now()), id, [&desk, id] { return desk.maps.contains(id); }, {}},
@@ -62,7 +47,7 @@ void load(Desk& desk, const Ask& ask, const LoadRequest& request, const std::str
   const bool native = format == "concord";
   if (native && request.agent)
     return desk.hub.refuse(ask, Code::kBadRequest, "the agents of a concord file keep their names");
-  const MapRequest load{desk.id(ask), MapRequest::Op::kLoad,      request.map, format,
+  const MapRequest load{desk.id(ask), MapRequest::Op::kLoad,      request.map, {format},
                         false,        request.agent.value_or(""), desk.now()};
   // A native map is checked by merge, taken in by ingest, corrected by merge, labelled by semantic: all are asked until
   // all have it.
@@ -81,11 +66,13 @@ void load(Desk& desk, const Ask& ask, const LoadRequest& request, const std::str
 
 void work_on(Desk& desk, const Ask& ask, const SaveRequest& request) {
   if (request.formats.empty()) return desk.hub.refuse(ask, Code::kBadRequest, "name at least one format");
-  const auto run = std::make_shared<SaveRun>(SaveRun{request, {}});
-  char hash[17];
-  std::snprintf(hash, sizeof(hash), "%016llx", static_cast<unsigned long long>(digest(desk.world.map().map())));
-  run->answer.content = hash;
-  run_save(desk, ask, run);
+  MapRequest save{desk.id(ask), MapRequest::Op::kSave, request.map, {}, request.overwrite, "", desk.now()};
+  for (const Format format : request.formats) save.formats.push_back(text_of(format));
+  Asker::Question question{"in/map_request", encode(save, desk.now()), save.id, {}, {"merge"}, kSavePatience};
+  desk.asker.ask(std::move(question), [&desk, ask, save](const Answer& answer) {
+    if (!answer.ok) return desk.hub.refuse(ask, code_of(answer.code), answer.message);
+    desk.hub.answer(ask, saved(save, answer));
+  });
 }
 
 void work_on(Desk& desk, const Ask& ask, const MapsRequest& /*request*/) {

@@ -84,6 +84,7 @@ label_instance_t to_wire(const LabelInstance& instance) {
     out.centroid[i] = instance.centroid[i];
   }
   out.asset = instance.asset;
+  out.T_map_asset = wire::to_wire(instance.T_map_asset);
   return out;
 }
 
@@ -102,6 +103,7 @@ Decoded<LabelInstance> from_wire(const label_instance_t& in) {
   const bool is_asset = in.asset.empty() || is_name(in.asset);
   out.require(is_asset ? Result<void>() : refuse(Code::kBadName, "an instance is an asset that has no name"));
   out.take(&LabelInstance::asset, Result<std::string>(in.asset));
+  out.take(&LabelInstance::T_map_asset, wire::from_wire(in.T_map_asset));
   return out.done();
 }
 
@@ -229,7 +231,7 @@ Bytes encode(const LabelList& value, std::int64_t utime) {
 template <>
 Decoded<LabelList> decode<LabelList>(std::span<const std::uint8_t> bytes) {
   static constexpr WireField kInstance[] = {fixed(4 + 4), text(wire::kTitleLength), fixed(8 + 24 + 24),
-                                            text(wire::kNameLength)};
+                                            text(wire::kNameLength), fixed(wire::kTransformBytes)};
   static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength), fixed(4 + 4), count(kMostInPart),
                                           records(kInstance)};
   const auto in = wire::from_bytes<label_list_t>(bytes, kLayout);

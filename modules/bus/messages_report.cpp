@@ -139,17 +139,28 @@ Bytes encode(const Answer& value, std::int64_t utime) {
   out.message = wire::clipped(value.message);
   out.revision = value.revision;
   out.count = value.count;
+  out.content = static_cast<std::int64_t>(value.content);
+  out.parts = value.parts;
+  out.part_count = static_cast<std::int32_t>(out.parts.size());
   return wire::to_bytes(out);
 }
 
 template <>
 Decoded<Answer> decode<Answer>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {fixed(8),    text(wire::kIdLength),   text(wire::kNameLength),
-                                          fixed(1),    text(wire::kNameLength), text(wire::kMessageLength),
-                                          fixed(8 + 8)};
+  static constexpr WireField kLayout[] = {fixed(8),
+                                          text(wire::kIdLength),
+                                          text(wire::kNameLength),
+                                          fixed(1),
+                                          text(wire::kNameLength),
+                                          text(wire::kMessageLength),
+                                          fixed(3 * 8),
+                                          count(16),
+                                          array(8)};
   const auto in = wire::from_bytes<answer_t>(bytes, kLayout);
   if (!in) return bad(in.error());
-  return Answer{in->request_id, in->process, in->ok != 0, in->code, in->message, in->revision, in->count};
+  return Answer{in->request_id, in->process,  in->ok != 0, in->code,
+                in->message,    in->revision, in->count,   static_cast<std::uint64_t>(in->content),
+                in->parts};
 }
 
 Bytes encode(const AgentList& value) {

@@ -91,19 +91,34 @@ Bytes encode(const MapRequest& value, std::int64_t utime) {
     case MapRequest::Op::kLoad: out.op = map_request_t::LOAD; break;
   }
   out.map = value.map;
-  out.format = value.format;
+  out.formats = value.formats;
+  out.count = static_cast<std::int32_t>(out.formats.size());
   out.overwrite = value.overwrite;
   out.agent = value.agent;
   return wire::to_bytes(out);
 }
 
+namespace {
+
+bool are_formats(const MapRequest& request) {
+  const auto is_once = [&](const std::string& format) {
+    return (format == "bt" || format == "ot" || format == "concord") &&
+           std::ranges::count(request.formats, format) == 1;
+  };
+  const std::size_t n = request.formats.size();
+  return std::ranges::all_of(request.formats, is_once) && (request.op == MapRequest::Op::kLoad ? n <= 1 : n >= 1);
+}
+
+}  // namespace
+
 template <>
 Decoded<MapRequest> decode<MapRequest>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {fixed(8), text(wire::kIdLength),  fixed(1), text(wire::kNameLength), text(7),
-                                          fixed(1), text(wire::kNameLength)};
+  static constexpr WireField kLayout[] = {
+      fixed(8), text(wire::kIdLength),  fixed(1), text(wire::kNameLength), count(3), texts(7),
+      fixed(1), text(wire::kNameLength)};
   const auto in = wire::request_from_bytes<map_request_t>(bytes, kLayout);
   if (!in) return tl::unexpected(in.error());
-  MapRequest out{in->request_id, MapRequest::Op::kList, in->map, in->format, in->overwrite != 0, in->agent, in->utime};
+  MapRequest out{in->request_id, MapRequest::Op::kList, in->map, in->formats, in->overwrite != 0, in->agent, in->utime};
   switch (in->op) {
     case map_request_t::LIST: return out;
     case map_request_t::SAVE: out.op = MapRequest::Op::kSave; break;
@@ -113,9 +128,8 @@ Decoded<MapRequest> decode<MapRequest>(std::span<const std::uint8_t> bytes) {
   if (!is_name(out.map)) {
     return bad(Code::kBadName, std::string("a map's name is ") + kNameRule, out.id);
   }
-  const bool any_format = out.format.empty() && out.op == MapRequest::Op::kLoad;
-  if (!any_format && out.format != "bt" && out.format != "ot" && out.format != "concord") {
-    return bad(Code::kBadRequest, "format must be bt, ot or concord", out.id);
+  if (!are_formats(out)) {
+    return bad(Code::kBadRequest, "formats must be of bt, ot and concord: SAVE each once, LOAD one or none", out.id);
   }
   if (!out.agent.empty() && !is_name(out.agent)) return bad_agent(out.id);
   return out;

@@ -205,7 +205,7 @@ DemoRun::Step DemoRun::all_taken_in() {
 tl::expected<std::int64_t, Failure> DemoRun::save(const std::string& name) {
   const double end = now() + kSync;
   for (;;) {
-    const MapRequest request{live_->new_id(), MapRequest::Op::kSave, name, "bt", true, ""};
+    const MapRequest request{live_->new_id(), MapRequest::Op::kSave, name, {"bt"}, true, ""};
     const auto answer = live_->ask("in/map_request", request);
     if (answer) return answer->revision;
     // A merge that was started again waits for its layers first.

@@ -7,6 +7,7 @@
 #include "cli/extent.hpp"
 #include "cli/numbers.hpp"
 #include "cli/parts.hpp"
+#include "cli/report.hpp"
 #include "cli/table.hpp"
 
 namespace concord {
@@ -40,7 +41,10 @@ nlohmann::json to_json(const LabelInstance& instance, double resolution) {
                         {"voxels", instance.voxels},
                         {"centroid", std::array<double, 3>{c.x(), c.y(), c.z()}},
                         {"box", nullptr}};
-  if (!instance.asset.empty()) out["asset"] = instance.asset;
+  if (!instance.asset.empty()) {
+    out["asset"] = instance.asset;
+    out["T_map_asset"] = to_numbers(instance.T_map_asset);
+  }
   if (instance.voxels > 0) out["box"] = to_json(extent(instance.min, instance.max, resolution));
   return out;
 }

@@ -12,7 +12,8 @@ namespace concord {
 namespace {
 
 struct Save {
-  std::string map, format = "bt";
+  std::string map;
+  std::vector<std::string> formats{"bt"};
   bool overwrite = false;
 };
 
@@ -23,12 +24,18 @@ struct Load {
 Outcome save_map(const Save& save, const Common& common) {
   if (!is_name(save.map)) return bad_name(save.map);
   Live live(common);
-  const MapRequest request{live.new_id(), MapRequest::Op::kSave, save.map, save.format, save.overwrite, ""};
-  return print_answer(live.ask("in/map_request", request), common);
+  const MapRequest request{live.new_id(), MapRequest::Op::kSave, save.map, save.formats, save.overwrite, ""};
+  const auto answer = live.ask("in/map_request", request);
+  if (!answer) return tl::unexpected(answer.error());
+  nlohmann::json object = to_json(*answer);
+  object["digest"] = hex(answer->content);
+  object["bytes"] = answer->parts;
+  common.print(object, answer->process + ": " + answer->message);
+  return Exit::kDone;
 }
 
 tl::expected<MapList, Failure> request_list(Live& live) {
-  const MapRequest request{live.new_id(), MapRequest::Op::kList, "", "", false, ""};
+  const MapRequest request{live.new_id(), MapRequest::Op::kList, "", {}, false, ""};
   const auto list = std::make_shared<std::optional<MapList>>();  // the subscription outlives this call
   live.hear<MapList>("out/map_list", [list, id = request.id](const std::string&, MapList heard) {
     if (heard.id == id) *list = std::move(heard);
@@ -61,13 +68,15 @@ Outcome load(const Load& load, const Common& common) {
   if (!load.agent.empty() && !is_name(load.agent)) return bad_name(load.agent);
   if (!is_name(load.map)) return bad_name(load.map);
   Live live(common);
-  MapRequest request{live.id_or_new(load.id), MapRequest::Op::kLoad, load.map, load.format, false, load.agent};
-  if (request.format.empty()) {
+  std::string format = load.format;
+  if (format.empty()) {
     const auto list = request_list(live);
     if (!list) return tl::unexpected(list.error());
-    request.format = best_format(*list, load.map);
+    format = best_format(*list, load.map);
   }
-  if (request.format == "concord") return load_archive(live, request, common);
+  MapRequest request{live.id_or_new(load.id), MapRequest::Op::kLoad, load.map, {}, false, load.agent};
+  if (!format.empty()) request.formats = {format};
+  if (format == "concord") return load_archive(live, request, common);
   const auto answer = live.ask("in/map_request", request);
   if (!answer) return tl::unexpected(answer.error());
   const std::string& agent = request.agent.empty() ? request.map : request.agent;
@@ -100,8 +109,12 @@ void add_saved_maps(Program& program) {
       program.add("save", "saves the map", [save](const Common& common) { return save_map(*save, common); });
   saving.add_option("name", save->map, "without extension")->required();
   saving
-      .add_option("--format", save->format,
-                  "bt or ot: the merged map for other programs; concord: every layer, and all that people made")
+      .add_option(
+          "--format", save->formats,
+          "bt or ot: the merged map for other programs; concord: every layer, and all that people made; several "
+          "with commas: all are written or none")
+      ->delimiter(',')
+      ->allow_extra_args(false)
       ->check(CLI::IsMember({"bt", "ot", "concord"}))
       ->capture_default_str();
   saving.add_flag("--overwrite", save->overwrite, "replaces a map of this name");

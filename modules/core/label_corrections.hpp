@@ -134,6 +134,7 @@ struct LabelInstance {
   VoxelIndex min, max;
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  ///< metres, map frame
   std::string asset = {};                              ///< that it is; empty: none
+  Transform T_map_asset = Transform::Identity();       ///< of an asset: where its model lies
 };
 
 /// Of values that are not kUnknown.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -45,11 +46,14 @@ struct MapRequest {
   enum class Op { kSave, kList, kLoad };
   std::string id;
   Op op = Op::kSave;
-  std::string map;     ///< name without extension
-  std::string format;  ///< "bt", "ot" or "concord"; empty with kLoad: whichever exists
+  std::string map;  ///< name without extension
+  /// "bt", "ot" or "concord". kSave: each once, all are written or none; kLoad: one, or none: whichever exists.
+  std::vector<std::string> formats;
   bool overwrite = false;
   std::string agent;       ///< with kLoad; empty: the map's name
   std::int64_t utime = 0;  ///< when it was asked
+
+  [[nodiscard]] bool names(const std::string& format) const { return std::ranges::count(formats, format) > 0; }
 };
 
 inline constexpr std::size_t kMaxWaypoints = 1000;
@@ -97,7 +101,9 @@ struct Answer {
   std::string code;     ///< "OK" or a Code's name
   std::string message;  ///< for a person
   std::int64_t revision = 0;
-  std::int64_t count = 0;  ///< voxels, bytes or items concerned
+  std::int64_t count = 0;                ///< voxels, bytes or items concerned
+  std::uint64_t content = 0;             ///< of a map that was saved: digest of its voxels
+  std::vector<std::int64_t> parts = {};  ///< of a map that was saved: bytes of each format, as they were asked for
 };
 
 /// What is known of one point of a path.

@@ -33,7 +33,7 @@ struct MapFile {
 /// Without a format: the one that says most of those that exist.
 Result<MapFile> find_map(const std::filesystem::path& folder, const MapRequest& request) {
   for (const std::string format : {"concord", "ot", "bt"}) {
-    if (!request.format.empty() && request.format != format) continue;
+    if (!request.formats.empty() && !request.names(format)) continue;
     MapFile file{folder / (request.map + "." + format), format == "concord"};
     std::error_code error;
     if (std::filesystem::exists(file.path, error)) return file;

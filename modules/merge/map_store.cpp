@@ -8,15 +8,23 @@
 namespace concord {
 
 Result<void> MapStore::check(const std::string& name, const std::string& format, bool overwrite) const {
-  if (overwrite || !contains(name, format)) return {};
+  std::error_code error;
+  const auto status = std::filesystem::status(path_of(name, format), error);
+  if (!std::filesystem::exists(status)) return {};
+  if (!std::filesystem::is_regular_file(status)) {
+    return refuse(Code::kIo, path_of(name, format).string() + ": is no regular file");
+  }
+  if (overwrite) return {};
   return refuse(Code::kExists, "a map " + name + "." + format + " exists; ask to overwrite it, or choose another name");
 }
 
-Result<void> MapStore::save(ByteSpan bytes, const std::string& name, const std::string& format) const {
+Result<void> MapStore::save(const std::string& name, const Files& files) const {
   std::error_code error;
   std::filesystem::create_directories(folder_, error);
   if (error) return refuse(Code::kIo, folder_.string() + ": " + error.message());
-  return write_whole_file(path_of(name, format), bytes);
+  std::vector<FileToWrite> all;
+  for (const auto& [format, bytes] : files) all.push_back({path_of(name, format), bytes});
+  return write_whole_files(all);
 }
 
 bool MapStore::contains(const std::string& name, const std::string& format) const {

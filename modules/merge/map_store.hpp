@@ -16,10 +16,12 @@ class MapStore {
  public:
   explicit MapStore(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  /// Whether a map may take this name. Refused: kExists unless `overwrite`.
+  /// Whether a map may take this name. Refused: kExists unless `overwrite`; kIo: something that is no file has it.
   [[nodiscard]] Result<void> check(const std::string& name, const std::string& format, bool overwrite) const;
-  /// Writes the whole file, synced, before it takes its name; an interrupted save leaves the old one. Refused: kIo.
-  [[nodiscard]] Result<void> save(ByteSpan bytes, const std::string& name, const std::string& format) const;
+  /// By format.
+  using Files = std::vector<std::pair<std::string, Bytes>>;
+  /// Writes the whole files, synced, before any takes its name: a refused save leaves the old ones. Refused: kIo.
+  [[nodiscard]] Result<void> save(const std::string& name, const Files& files) const;
 
   [[nodiscard]] bool contains(const std::string& name, const std::string& format) const;
   /// Refused: kNotFound, kTooLarge (before memory is taken), kIo.

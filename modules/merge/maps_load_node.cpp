@@ -12,7 +12,7 @@ namespace concord {
 
 /// Only native maps hold anything that is merge's; ingest answers for the others.
 void MapsNode::load(const MapRequest& request) {
-  if (request.format != kNative && !(request.format.empty() && maps_.contains(request.map, kNative))) return;
+  if (!request.names(kNative) && !(request.formats.empty() && maps_.contains(request.map, kNative))) return;
   const std::uint64_t content = content_of(request);
   if (answers_.repeat(request.id, context_.process, content, request.utime)) return;
   if (parts_.people_node.repeat(kRequests, request.id, content)) return;

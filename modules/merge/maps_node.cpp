@@ -1,6 +1,7 @@
 #include "merge/maps_node.hpp"
 
 #include <filesystem>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -18,6 +19,14 @@ constexpr std::int64_t kForgetPeriod = 10'000'000;
 constexpr std::int64_t kSilence = 3'500'000;
 /// Longer, and it does not run. Between the two a map would be saved without labels that somebody keeps.
 constexpr std::int64_t kGone = 90'000'000;
+
+std::string names_of(const MapRequest& request) {
+  std::string names;
+  for (const std::string& format : request.formats) {
+    names += (names.empty() ? "" : ", ") + request.map + "." + format;
+  }
+  return names;
+}
 
 }  // namespace
 
@@ -48,42 +57,54 @@ void MapsNode::save(const MapRequest& request) {
   if (answers_.repeat(request.id, context_.process, content, request.utime)) return;
   if (parts_.people_node.repeat(kRequests, request.id, content)) return;
   const auto labels = labels_for(request);
-  const auto bytes =
+  const auto files =
       labels.and_then([&](const std::optional<Bytes>& all) { return write(request, all.value_or(Bytes())); });
-  if (!bytes) return answers_.give(replies_.denied(kRequests, request.id, bytes.error()), content, request.utime);
-  std::string words = "saved " + request.map + "." + request.format;
-  if (request.format == kNative && !*labels) words += ", without labels: semantic does not run";
-  answers_.give(replies_.granted(request.id, parts_.map.revision(), *bytes, words), content);
+  if (!files) return answers_.give(replies_.denied(kRequests, request.id, files.error()), content, request.utime);
+  Answer saved = replies_.granted(request.id, parts_.map.revision(), 0, "saved " + names_of(request));
+  if (request.names(kNative) && !*labels) saved.message += ", without labels: semantic does not run";
+  saved.content = digest(parts_.map.layers().map());
+  for (const auto& [format, bytes] : *files) saved.parts.push_back(static_cast<std::int64_t>(bytes.size()));
+  saved.count = std::accumulate(saved.parts.begin(), saved.parts.end(), std::int64_t{0});
+  answers_.give(saved, content);
 }
 
-/// Returns the bytes written.
-Result<std::int64_t> MapsNode::write(const MapRequest& request, const Bytes& labels) {
+/// Returns what was written: all formats, or none.
+Result<MapStore::Files> MapsNode::write(const MapRequest& request, const Bytes& labels) {
+  if (const auto may = may_write(request); !may) return tl::unexpected(may.error());
+  MapStore::Files files;
+  for (const std::string& format : request.formats) {
+    auto bytes = encoded(format, labels);
+    if (!bytes) return tl::unexpected(bytes.error());
+    files.emplace_back(format, std::move(*bytes));
+  }
+  if (const auto saved = maps_.save(request.map, files); !saved) return tl::unexpected(saved.error());
+  return files;
+}
+
+Result<void> MapsNode::may_write(const MapRequest& request) {
   parts_.map.refold_and_send();
   if (!parts_.map.begun()) {
     return refuse(Code::kBusy, "the map is not whole again after a restart; ask again in some seconds");
   }
-  if (request.format == kNative) {
+  if (request.names(kNative)) {
     if (const auto whole = parts_.agents.all_whole(); !whole) return tl::unexpected(whole.error());
   }
-  if (const auto may = maps_.check(request.map, request.format, request.overwrite); !may) {
-    return tl::unexpected(may.error());
+  for (const std::string& format : request.formats) {
+    if (const auto may = maps_.check(request.map, format, request.overwrite); !may) return may;
   }
-  const auto bytes = encoded(request, labels);
-  if (!bytes) return tl::unexpected(bytes.error());
-  if (const auto saved = maps_.save(*bytes, request.map, request.format); !saved) return tl::unexpected(saved.error());
-  return static_cast<std::int64_t>(bytes->size());
+  return {};
 }
 
-Result<Bytes> MapsNode::encoded(const MapRequest& request, const Bytes& labels) {
-  if (request.format == kNative) return archived(labels);
+Result<Bytes> MapsNode::encoded(const std::string& format, const Bytes& labels) {
+  if (format == kNative) return archived(labels);
   return write_octomap_file(parts_.map.layers().map(), context_.site.resolution,
-                            request.format == "ot" ? OctomapFormat::kFull : OctomapFormat::kBinary);
+                            format == "ot" ? OctomapFormat::kFull : OctomapFormat::kBinary);
 }
 
 /// Nothing: another format, or semantic does not run. It lays them there for each such request that it hears, and hears
 /// it when we do.
 Result<std::optional<Bytes>> MapsNode::labels_for(const MapRequest& request) const {
-  if (request.format != kNative) return std::nullopt;
+  if (!request.names(kNative)) return std::nullopt;
   const std::int64_t silent = context_.bus.now() - semantic_heard_.value_or(start_);
   std::error_code error;
   const bool has_run = semantic_heard_ || std::filesystem::exists(context_.site.state / "semantic.db", error);

@@ -40,8 +40,9 @@ class MapsNode {
   void load(const MapRequest& request);
 
   [[nodiscard]] Result<std::optional<Bytes>> labels_for(const MapRequest& request) const;
-  [[nodiscard]] Result<std::int64_t> write(const MapRequest& request, const Bytes& labels);
-  [[nodiscard]] Result<Bytes> encoded(const MapRequest& request, const Bytes& labels);
+  [[nodiscard]] Result<MapStore::Files> write(const MapRequest& request, const Bytes& labels);
+  [[nodiscard]] Result<void> may_write(const MapRequest& request);
+  [[nodiscard]] Result<Bytes> encoded(const std::string& format, const Bytes& labels);
   [[nodiscard]] Result<Bytes> archived(const Bytes& labels);
 
   /// A native file that is being loaded, between its request and the arrival of its layers: it is read once.

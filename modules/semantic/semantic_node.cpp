@@ -191,10 +191,9 @@ bool SemanticNode::repeat(const LabelRequest& request, std::uint64_t content) {
 void SemanticNode::grant(const std::string& id, const Labels::Made& made, const std::string& message) {
   std::string what = "done";
   if (made.of.label != 0) {
-    const LabelInstance instance =
-        made.of.instance != 0
-            ? view_.instance(made.of)
-            : LabelInstance{made.of, labels_.classes().at(made.of.label).name, 0, {}, {}, {0, 0, 0}, ""};
+    const LabelInstance instance = made.of.instance != 0
+                                       ? view_.instance(made.of)
+                                       : LabelInstance{made.of, labels_.classes().at(made.of.label).name, 0, {}, {}};
     context_.bus.publish("out/label_list", encode(LabelList{id, 0, 1, {instance}}, context_.bus.now()));
     what = words(instance);
   }

@@ -42,6 +42,37 @@ bool write_all(int fd, ByteSpan bytes) {
   return true;
 }
 
+std::filesystem::path beside_of(const std::filesystem::path& file) { return file.string() + ".part"; }
+
+Result<void> write_beside(const FileToWrite& file) {
+  const std::filesystem::path beside = beside_of(file.path);
+  Descriptor out(beside, O_WRONLY | O_CREAT | O_TRUNC);
+  if (out.get() < 0 || !write_all(out.get(), file.bytes) || ::fsync(out.get()) != 0 || !out.close()) {
+    return refuse_io(beside);
+  }
+  return {};
+}
+
+/// Takes away what was written beside and not renamed.
+class Beside {
+ public:
+  explicit Beside(std::span<const FileToWrite> files) : files_(files) {}
+  Beside(const Beside&) = delete;
+  Beside& operator=(const Beside&) = delete;
+  ~Beside() {
+    for (const FileToWrite& file : files_) ::unlink(beside_of(file.path).c_str());
+  }
+
+ private:
+  std::span<const FileToWrite> files_;
+};
+
+Result<void> sync_folder_of(const std::filesystem::path& file) {
+  const Descriptor folder(file.has_parent_path() ? file.parent_path() : ".", O_RDONLY | O_DIRECTORY);
+  if (folder.get() < 0 || ::fsync(folder.get()) != 0) return refuse_io(file);
+  return {};
+}
+
 }  // namespace
 
 Result<Bytes> read_whole_file(const std::filesystem::path& file, std::uint64_t most) {
@@ -64,18 +95,19 @@ Result<Bytes> read_whole_file(const std::filesystem::path& file, std::uint64_t m
 }
 
 Result<void> write_whole_file(const std::filesystem::path& file, ByteSpan bytes) {
-  const std::filesystem::path beside = file.string() + ".part";
-  Descriptor out(beside, O_WRONLY | O_CREAT | O_TRUNC);
-  if (out.get() < 0) return refuse_io(beside);
-  if (!write_all(out.get(), bytes) || ::fsync(out.get()) != 0 || !out.close() ||
-      ::rename(beside.c_str(), file.c_str()) != 0) {
-    const auto refusal = refuse_io(beside);
-    ::unlink(beside.c_str());
-    return refusal;
+  const FileToWrite one{file, bytes};
+  return write_whole_files({&one, 1});
+}
+
+Result<void> write_whole_files(std::span<const FileToWrite> files) {
+  const Beside beside(files);
+  for (const FileToWrite& file : files) {
+    if (const auto written = write_beside(file); !written) return written;
   }
-  const Descriptor folder(file.has_parent_path() ? file.parent_path() : ".", O_RDONLY | O_DIRECTORY);
-  if (folder.get() < 0 || ::fsync(folder.get()) != 0) return refuse_io(file);
-  return {};
+  for (const FileToWrite& file : files) {
+    if (::rename(beside_of(file.path).c_str(), file.path.c_str()) != 0) return refuse_io(file.path);
+  }
+  return sync_folder_of(files.front().path);
 }
 
 }  // namespace concord

@@ -40,7 +40,7 @@ class SavedMapSystemTest : public StackFixture {
     concord("set-transform robot1 " + kSomewhere);
     concord("edit add" + kBox);
     ASSERT_TRUE(happens([&] { return map_->synced() && map_->map().brick_count() > 12; }));
-    concord("--timeout 20 save hall --format concord");
+    concord("--timeout 20 save --format concord,bt hall");
     ASSERT_TRUE(happens([&] { return map_->synced(); }));
     before_ = map_->map();
   }

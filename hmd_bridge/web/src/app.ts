@@ -5,6 +5,7 @@ import { News } from "./base/news";
 import { Signal } from "./base/signal";
 import { fromYaw, kIdentity, type Vec3 } from "./base/vec";
 import { AlignSession } from "./edit/align_session";
+import { keptTurnAt } from "./edit/asset_pose";
 import { ConflictTour } from "./edit/conflict_tour";
 import { Editor } from "./edit/editor";
 import { Obstacles } from "./edit/obstacles";
@@ -137,10 +138,13 @@ export class App {
     await this.changed(asked, ({ instance, voxels }) => `${class_name} ${instance}: ${voxels} voxels.`);
   }
 
-  async moveAsset({ label, instance, class_name }: Instance): Promise<void> {
+  async moveAsset(thing: Instance): Promise<void> {
+    const { label, instance, class_name } = thing;
     const position = await this.editor.askPoint(`Click where ${class_name} ${instance} shall stand.`);
     if (!position) return;
-    const asked = this.ask("asset_move", { label, instance, frame: "map", T_frame_asset: { position, rotation: fromYaw(0) } });
+    await this.loadThings();  // somebody may have turned it meanwhile
+    const now = this.things.value.find((one) => one.label === label && one.instance === instance) ?? thing;
+    const asked = this.ask("asset_move", { label, instance, frame: "map", T_frame_asset: keptTurnAt(now, position) });
     await this.changed(asked, () => `${class_name} ${instance} was moved.`);
   }
 

@@ -279,6 +279,7 @@ void AssetsNode::answer_askers() {
     }
     LabelInstance instance = parts_.instance(one->of);
     instance.asset = one->what.asset;
+    instance.T_map_asset = one->what.T_map_asset;
     context_.bus.publish("out/label_list", encode(LabelList{one->request_id, 0, 1, {instance}}, context_.bus.now()));
     replies_.grant(one->request_id, parts_.labels.find(one->request_id)->revision, one->count,
                    class_of(*one) + " " + std::to_string(one->of.instance) + " is put in" + asker->second + "; edit " +

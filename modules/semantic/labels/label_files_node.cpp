@@ -34,11 +34,11 @@ LabelFilesNode::LabelFilesNode(const NodeContext& context, Parts parts)
 }
 
 void LabelFilesNode::on_request(const MapRequest& request) {
-  if (request.op == MapRequest::Op::kSave && request.format == kNative) return hand_over(request);
+  if (request.op == MapRequest::Op::kSave && request.names(kNative)) return hand_over(request);
   if (request.op != MapRequest::Op::kLoad) return;
   const fs::path file = context_.site.state / "maps" / (request.map + "." + kNative);
   std::error_code error;
-  if (request.format == kNative || (request.format.empty() && fs::exists(file, error))) open(request);
+  if (request.names(kNative) || (request.formats.empty() && fs::exists(file, error))) open(request);
 }
 
 /// What merge says no to for want of this, it is asked for again.

@@ -63,8 +63,7 @@ std::vector<VoxelIndex> LabelView::voxels_of(InstanceId of) const {
 LabelInstance LabelView::instance(InstanceId of) const { return summary(of, voxels_of(of)); }
 
 LabelInstance LabelView::summary(InstanceId of, const std::vector<VoxelIndex>& voxels) const {
-  LabelInstance out{
-      of, labels_.classes().at(of.label).name, static_cast<std::int64_t>(voxels.size()), {}, {}, {0, 0, 0}, ""};
+  LabelInstance out{of, labels_.classes().at(of.label).name, static_cast<std::int64_t>(voxels.size()), {}, {}};
   if (voxels.empty()) return out;
   out.min = out.max = voxels.front();
   std::array<std::int64_t, 3> sum{};
@@ -149,7 +148,12 @@ std::vector<LabelInstance> LabelView::within(const LabelQuery& query) const {
 Result<std::vector<LabelInstance>> LabelView::answer(const LabelQuery& query) const {
   auto out = found(query);
   if (!out || out->empty()) return out;
-  for (LabelInstance& one : *out) one.asset = labels_.asset_of(one.of);
+  for (LabelInstance& one : *out) {
+    const auto model = labels_.model_of(one.of);
+    if (!model) continue;
+    one.asset = model->asset;
+    one.T_map_asset = model->T_map_asset;
+  }
   return out;
 }
 
@@ -159,7 +163,7 @@ Result<std::vector<LabelInstance>> LabelView::found(const LabelQuery& query) con
   if (query.kind == Kind::kWithin) return within(query);
   if (query.kind == Kind::kClasses) {
     for (const auto& [label, of_class] : labels_.classes()) {
-      out.push_back({{label, 0}, of_class.name, 0, {}, {}, {0, 0, 0}, ""});
+      out.push_back({{label, 0}, of_class.name, 0, {}, {}});
     }
     return out;
   }

@@ -194,16 +194,22 @@ BrickSet Labels::bricks_of(InstanceId of) const {
   return out;
 }
 
-std::string Labels::asset_of(InstanceId of) const {
+std::optional<Injection> Labels::model_of(InstanceId of) const {
+  std::optional<Injection> last;
+  std::int64_t since = 0;
   for (const InstanceId source : with_sources(of)) {
     const auto claims = claims_.find(source);
     if (claims == claims_.end()) continue;
     for (const std::uint32_t step : claims->second) {
-      const std::string& asset = steps_[step].claim.injection.asset;
-      if (!asset.empty() && holder_of(step) == of) return asset;
+      const LabelCorrection::Claim& claim = steps_[step].claim;
+      if (claim.edit_id.empty() || holder_of(step) != of) continue;
+      const std::int64_t revision = edits_.at(claim.edit_id).revision;
+      if (last && revision < since) continue;
+      since = revision;
+      last = claim.injection;
     }
   }
-  return {};
+  return last;
 }
 
 std::optional<InstanceId> Labels::holder_of(std::uint32_t claim) const {

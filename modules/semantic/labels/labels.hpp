@@ -106,8 +106,8 @@ class Labels {
   /// Whose a claim is, be its edit there or not; nothing if it is undone or taken off, or no claim.
   [[nodiscard]] std::optional<InstanceId> owner_of(const std::string& claim_id) const;
 
-  /// The asset that it is, if it is a model which lies in the map; else empty.
-  [[nodiscard]] std::string asset_of(InstanceId of) const;
+  /// Which model it is, if it is one that lies in the map, and where: of one on its way, where it was put last.
+  [[nodiscard]] std::optional<Injection> model_of(InstanceId of) const;
 
   [[nodiscard]] std::optional<InstanceId> at(VoxelIndex voxel) const;
 

@@ -50,6 +50,7 @@ TEST_F(Labelling, TheServerSaysWhichOneItIsAndAllAreListed) {
   ASSERT_EQ(all.size(), 2U);
   EXPECT_EQ(all[0]["class_name"], "chair");
   EXPECT_FALSE(all[0].contains("asset")) << "people said so";
+  EXPECT_FALSE(all[0].contains("T_map_asset"));
   EXPECT_NEAR(all[0]["min"][0].get<double>(), 1.0, 1e-9);
   EXPECT_NEAR(all[0]["max"][2].get<double>(), 0.6, 1e-9);
   const Json one = ana.ask(InstancesRequest{1, 1});

@@ -3,6 +3,8 @@
 #include <fstream>
 
 #include "bridge_test.hpp"
+#include "core/octomap_reader.hpp"
+#include "store/whole_file.hpp"
 
 namespace concord::hmd {
 namespace {
@@ -91,9 +93,20 @@ TEST_F(Working, MapsAreSavedListedAndLoaded) {
   lab.run(3);
   const Json saved = ana.ask(save);
   EXPECT_CODE(saved, "OK");
-  EXPECT_EQ(saved["answer"]["files"].size(), 2u);
+  ASSERT_EQ(saved["answer"]["files"].size(), 2u);
+  const std::filesystem::path maps = lab.site.state / "maps";
+  for (const Json& file : saved["answer"]["files"]) {
+    EXPECT_EQ(file["bytes"], std::filesystem::file_size(maps / file["file"].get<std::string>()));
+  }
+  EXPECT_CODE(ana.ask(SaveRequest{"hall", {Format::kOt, Format::kBt}, false}), "EXISTS");
+  EXPECT_FALSE(std::filesystem::exists(maps / "hall.ot")) << "an error means that nothing has changed";
+  const Json full = ana.ask(SaveRequest{"full", {Format::kOt}, false});
+  const auto written = read_whole_file(maps / "full.ot", 10'000'000);
+  ASSERT_TRUE(written);
+  const std::uint64_t content = std::stoull(full["answer"]["content"].get<std::string>(), nullptr, 16);
+  EXPECT_EQ(content, digest(read_octomap_file(*written, std::nullopt)->map)) << "of what was written";
   EXPECT_CODE(ana.ask(save), "EXISTS");
-  EXPECT_EQ(ana.ask(MapsRequest{})["answer"]["maps"].size(), 2u);
+  EXPECT_EQ(ana.ask(MapsRequest{})["answer"]["maps"].size(), 3u);
   const std::int64_t id = ana.next_id();
   const Json climb = {
       {"id", id}, {"request", "save"}, {"body", {{"map", "../x"}, {"formats", {"bt"}}, {"overwrite", false}}}};

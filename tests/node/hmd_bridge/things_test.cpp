@@ -59,9 +59,16 @@ TEST_F(Furnishing, AnAssetIsPutMovedAndTakenOut) {
   ASSERT_EQ(instances().size(), 1U);
   EXPECT_EQ(instances()[0]["asset"], "crate");
   EXPECT_EQ(instances()[0]["class_name"], "box");
-  const Json moved = ana.ask(AssetMoveRequest{1, 1, Frame::kMap, at(4)});
+  EXPECT_NEAR(instances()[0]["T_map_asset"]["position"][0].get<double>(), 1.0, 1e-6);
+  Pose turned = at(4);
+  turned.rotation = {0, 0, 1, 0};
+  turned.position[0] += 1.0, turned.position[1] += 0.6;  // its corner, so that it covers the same place
+  const Json moved = ana.ask(AssetMoveRequest{1, 1, Frame::kMap, turned});
   ASSERT_TRUE(has_code(moved, "OK"));
   lab.run(2);
+  const Json lies = instances()[0]["T_map_asset"];
+  EXPECT_NEAR(lies["position"][0].get<double>(), 5.0, 1e-6);
+  EXPECT_NEAR(std::abs(lies["rotation"][2].get<double>()), 1.0, 1e-6) << "whoever moves it again keeps its turn";
   EXPECT_FALSE(is_there(1));
   EXPECT_TRUE(is_there(4));
   EXPECT_CODE(ana.ask(UndoRequest{moved["answer"]["undo"]}), "OK");

@@ -32,7 +32,8 @@ class IngestArchiveTest : public IngestStation {
         .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   }
   Answer load(const std::string& id, const std::string& format = "concord", const std::string& agent = "") {
-    const MapRequest request{id, MapRequest::Op::kLoad, "hall", format, false, agent};
+    MapRequest request{id, MapRequest::Op::kLoad, "hall", {}, false, agent};
+    if (!format.empty()) request.formats = {format};
     start_->answers[id].clear();
     start_->say_at("in/map_request", request);
     if (const Answer& answer = start_->answers[id].back(); answer.code != "BUSY") return answer;
@@ -78,7 +79,7 @@ TEST_F(IngestArchiveTest, every_layer_is_an_agent_of_its_id_in_its_frame) {
 
 TEST_F(IngestArchiveTest, nothing_is_loaded_before_merge_says_that_this_very_file_may_be) {
   const Bytes file = save(two_);
-  const MapRequest request{"q1", MapRequest::Op::kLoad, "hall", "concord", false, ""};
+  const MapRequest request{"q1", MapRequest::Op::kLoad, "hall", {"concord"}, false, ""};
   EXPECT_EQ(start_->ask(request).code, "BUSY");
   merge_says({"q1", "merge", false, "BUSY", "starts", 0, 0});
   merge_says({"q1", "planner", false, "BUSY", "", incarnation_for("q1"), 0});
@@ -99,7 +100,7 @@ TEST_F(IngestArchiveTest, what_merge_has_whole_is_not_loaded_again) {
   EXPECT_TRUE(load("q1").ok);
   restart();
   EXPECT_TRUE(start_->ask(AgentRequest{"r1", "robot1", AgentRequest::Op::kRemove}).ok);
-  EXPECT_EQ(start_->ask(MapRequest{"q1", MapRequest::Op::kLoad, "hall", "concord", false, ""}).code, "BUSY");
+  EXPECT_EQ(start_->ask(MapRequest{"q1", MapRequest::Op::kLoad, "hall", {"concord"}, false, ""}).code, "BUSY");
   EXPECT_TRUE(merge_says({"q1", "merge", true, "OK", "", 7, 0}).ok);
   start_->run(1);
   EXPECT_EQ(start_->counters.get("agents"), 1);

@@ -199,7 +199,7 @@ TEST_F(IngestRequestTest, unknown_agents_are_refused) {
 
 TEST_F(IngestRequestTest, a_saved_map_becomes_an_agent_that_stays) {
   save_map("hall.ot", some_map(40), OctomapFormat::kFull);
-  MapRequest request{"q1", MapRequest::Op::kLoad, "hall", "", false, ""};
+  MapRequest request{"q1", MapRequest::Op::kLoad, "hall", {}, false, ""};
   const Answer answer = start_->ask(request);
   EXPECT_TRUE(answer.ok) << answer.message;
   EXPECT_EQ(answer.message, "loaded; agent hall waits to be aligned");
@@ -218,7 +218,7 @@ TEST_F(IngestRequestTest, a_saved_map_becomes_an_agent_that_stays) {
 }
 
 TEST_F(IngestRequestTest, maps_that_are_not_there_or_damaged_change_nothing) {
-  MapRequest request{"q1", MapRequest::Op::kLoad, "hall", "bt", false, ""};
+  MapRequest request{"q1", MapRequest::Op::kLoad, "hall", {"bt"}, false, ""};
   EXPECT_EQ(start_->ask(request).code, "NO_MAP");
   save_map("hall.bt", some_map(40), OctomapFormat::kBinary);
   std::filesystem::resize_file(site_.state / "maps/hall.bt",
@@ -234,7 +234,7 @@ TEST_F(IngestRequestTest, maps_that_are_not_there_or_damaged_change_nothing) {
 
 TEST_F(IngestRequestTest, saving_and_listing_are_left_to_merge) {
   for (const auto op : {MapRequest::Op::kSave, MapRequest::Op::kList}) {
-    start_->bus.publish("in/map_request", encode(MapRequest{"q1", op, "hall", "bt", false, ""}, 1));
+    start_->bus.publish("in/map_request", encode(MapRequest{"q1", op, "hall", {"bt"}, false, ""}, 1));
   }
   start_->run(1);
   EXPECT_TRUE(start_->answers["q1"].empty());

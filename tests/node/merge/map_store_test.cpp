@@ -23,8 +23,8 @@ class MapStoreTest : public ::testing::Test {
 
 TEST_F(MapStoreTest, SavesWhatReadsBackTheSame) {
   const MapStore maps(folder_ / "maps");
-  ASSERT_TRUE(maps.save(bytes_, "hall", "bt"));
-  ASSERT_TRUE(maps.save(bytes_, "hall", "concord"));
+  ASSERT_TRUE(maps.save("hall", {{"bt", bytes_}}));
+  ASSERT_TRUE(maps.save("hall", {{"concord", bytes_}}));
   const auto files = maps.list();
   ASSERT_TRUE(files);
   const auto size = static_cast<std::int64_t>(bytes_.size());
@@ -37,10 +37,26 @@ TEST_F(MapStoreTest, SavesWhatReadsBackTheSame) {
 TEST_F(MapStoreTest, OverwritesOnlyWhenAsked) {
   const MapStore maps(folder_);
   EXPECT_TRUE(maps.check("hall", "bt", false));
-  ASSERT_TRUE(maps.save(bytes_, "hall", "bt"));
+  ASSERT_TRUE(maps.save("hall", {{"bt", bytes_}}));
   EXPECT_EQ(maps.check("hall", "bt", false).error().code, Code::kExists);
   EXPECT_TRUE(maps.check("hall", "ot", false));
   EXPECT_TRUE(maps.check("hall", "bt", true));
+}
+
+TEST_F(MapStoreTest, SavesAllFormatsOrNone) {
+  const MapStore maps(folder_);
+  ASSERT_TRUE(maps.save("hall", {{"bt", bytes_}}));
+  std::filesystem::create_directory(folder_ / "hall.ot.part");  // so that the second cannot be written
+  const auto saved = maps.save("hall", {{"bt", {4}}, {"ot", {5}}});
+  ASSERT_FALSE(saved);
+  EXPECT_EQ(saved.error().code, Code::kIo);
+  EXPECT_EQ(*maps.read("hall", "bt", 100), bytes_);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "hall.bt.part"));
+}
+
+TEST_F(MapStoreTest, WhatIsNoFileIsNotReplaced) {
+  std::filesystem::create_directory(folder_ / "hall.bt");
+  EXPECT_EQ(MapStore(folder_).check("hall", "bt", true).error().code, Code::kIo);
 }
 
 TEST_F(MapStoreTest, AFolderThatIsNotThereHasNoMaps) {
@@ -51,7 +67,7 @@ TEST_F(MapStoreTest, AFolderThatIsNotThereHasNoMaps) {
 
 TEST_F(MapStoreTest, SaysWhyItCannotSave) {
   ASSERT_TRUE(write_whole_file(folder_ / "file", {}));
-  const auto saved = MapStore(folder_ / "file").save(bytes_, "hall", "bt");
+  const auto saved = MapStore(folder_ / "file").save("hall", {{"bt", bytes_}});
   ASSERT_FALSE(saved);
   EXPECT_EQ(saved.error().code, Code::kIo);
 }

@@ -149,7 +149,7 @@ TEST_F(MergeNodeTest, AMapThatIsNotWholeYetIsNotSaved) {
   send_wall();
   ASSERT_TRUE(place("t1", Transform::Identity()).ok);
   start();
-  const MapRequest save{"s1", MapRequest::Op::kSave, "hall", "bt", true, ""};
+  const MapRequest save{"s1", MapRequest::Op::kSave, "hall", {"bt"}, true, ""};
   EXPECT_EQ(ask("in/map_request", encode(save, bus_->now())).code, "BUSY");
   agent_stream_->begin("frame1");
   run();
@@ -163,7 +163,7 @@ TEST_F(MergeNodeTest, AnIdBelongsToOneRequest) {
   Transform other = Transform::Identity();
   other.translation().x() = 1;
   EXPECT_EQ(place("one", other).code, "EXISTS");
-  const MapRequest save{"one", MapRequest::Op::kSave, "hall", "bt", false, ""};
+  const MapRequest save{"one", MapRequest::Op::kSave, "hall", {"bt"}, false, ""};
   EXPECT_EQ(ask("in/map_request", encode(save, bus_->now())).code, "EXISTS");
   ASSERT_TRUE(add("e1", {0, 0, 0}).ok);
   EXPECT_EQ(add("e1", {0, 0, 1}).code, "EXISTS");
@@ -210,18 +210,36 @@ TEST_F(MergeNodeTest, ARobotThatSendsOnlyPosesIsAnAgent) {
 
 TEST_F(MergeNodeTest, SavesAndLists) {
   ASSERT_TRUE(add("e1", {0, 0, 0}).ok);
-  const MapRequest save{"s1", MapRequest::Op::kSave, "hall", "bt", false, ""};
+  const MapRequest save{"s1", MapRequest::Op::kSave, "hall", {"bt"}, false, ""};
   EXPECT_TRUE(ask("in/map_request", encode(save, bus_->now())).ok);
-  const MapRequest again{"s2", MapRequest::Op::kSave, "hall", "bt", false, ""};
+  const MapRequest again{"s2", MapRequest::Op::kSave, "hall", {"bt"}, false, ""};
   EXPECT_EQ(ask("in/map_request", encode(again, bus_->now())).code, "EXISTS");
   EXPECT_TRUE(ask("in/map_request", encode(save, bus_->now())).ok) << "the same request is answered as before";
   EXPECT_TRUE(
-      ask("in/map_request", encode(MapRequest{"l1", MapRequest::Op::kList, "", "", false, ""}, bus_->now())).ok);
+      ask("in/map_request", encode(MapRequest{"l1", MapRequest::Op::kList, "", {}, false, ""}, bus_->now())).ok);
   ASSERT_EQ(list_.files.size(), 1u);
   EXPECT_EQ(list_.files[0].first, "hall.bt");
   const auto bytes = read_whole_file(site_.state / "maps/hall.bt", 10'000);
   ASSERT_TRUE(bytes);
   EXPECT_EQ(read_octomap_file(*bytes, std::nullopt)->map.occupied_count(), 1u);
+}
+
+TEST_F(MergeNodeTest, SavesAllFormatsOfARequestOrNone) {
+  ASSERT_TRUE(add("e1", {0, 0, 0}).ok);
+  MapRequest save{"s1", MapRequest::Op::kSave, "hall", {"bt"}, false, ""};
+  ASSERT_TRUE(ask("in/map_request", encode(save, bus_->now())).ok);
+  save = {"s2", MapRequest::Op::kSave, "hall", {"ot", "bt"}, false, ""};
+  EXPECT_EQ(ask("in/map_request", encode(save, bus_->now())).code, "EXISTS");
+  EXPECT_FALSE(std::filesystem::exists(site_.state / "maps/hall.ot")) << "a refused request changes nothing";
+  save = {"s3", MapRequest::Op::kSave, "hall", {"ot", "bt"}, true, ""};
+  const Answer saved = ask("in/map_request", encode(save, bus_->now()));
+  EXPECT_TRUE(saved.ok);
+  const auto written = read_whole_file(site_.state / "maps/hall.ot", 10'000);
+  ASSERT_TRUE(written);
+  EXPECT_EQ(saved.content, digest(read_octomap_file(*written, std::nullopt)->map)) << "of what was written";
+  ASSERT_EQ(saved.parts.size(), 2u);
+  EXPECT_EQ(saved.parts[0], static_cast<std::int64_t>(written->size()));
+  EXPECT_EQ(saved.count, saved.parts[0] + saved.parts[1]);
 }
 
 TEST_F(MergeNodeTest, AMapOfAnotherResolutionIsNotOpened) {

@@ -16,7 +16,7 @@ Transform somewhere() {
 class NativeMapTest : public MergeStation {
  protected:
   Answer ask_map(const std::string& id, MapRequest::Op op, bool overwrite = false) {
-    return ask("in/map_request", encode(MapRequest{id, op, "hall", "concord", overwrite, ""}, bus_->now()));
+    return ask("in/map_request", encode(MapRequest{id, op, "hall", {"concord"}, overwrite, ""}, bus_->now()));
   }
   Answer load(const std::string& id) { return ask_map(id, MapRequest::Op::kLoad); }
   Answer zone(const std::string& id, const std::string& name) {
@@ -262,7 +262,7 @@ TEST_F(NativeMapTest, IsOverwrittenOnlyWhenAsked) {
 
 TEST_F(NativeMapTest, OtherFormatsAreIngestsToLoad) {
   answers_.clear();
-  const MapRequest other{"l1", MapRequest::Op::kLoad, "hall", "bt", false, ""};
+  const MapRequest other{"l1", MapRequest::Op::kLoad, "hall", {"bt"}, false, ""};
   EXPECT_TRUE(ask("in/map_request", encode(other, bus_->now())).id.empty());
 }
 

@@ -174,7 +174,7 @@ TEST_F(PeopleMapTest, AStateFolderThatBecomesReadOnlyRefusesMapsAndServesOn) {
   std::filesystem::permissions(site_.state, std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
   const bool is_root = ::geteuid() == 0;  // who may write anywhere
   ASSERT_TRUE(!is_root || ::seteuid(65534) == 0);
-  const MapRequest save{"s1", MapRequest::Op::kSave, "hall", "bt", false, ""};
+  const MapRequest save{"s1", MapRequest::Op::kSave, "hall", {"bt"}, false, ""};
   EXPECT_EQ(ask("in/map_request", encode(save, bus_->now())).code, "IO");
   EXPECT_TRUE(add("e1", {0, 0, 0}).ok) << "its files are open";
   ASSERT_TRUE(!is_root || ::seteuid(0) == 0);

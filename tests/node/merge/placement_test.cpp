@@ -16,7 +16,8 @@ class PlacementTest : public PeopleStation {
     return agents_.agents[0].T_map_agent.translation().x();
   }
   Answer save(const std::string& id, const std::string& name) {
-    return ask("in/map_request", encode(MapRequest{id, MapRequest::Op::kSave, name, "concord", true, ""}, bus_->now()));
+    return ask("in/map_request",
+               encode(MapRequest{id, MapRequest::Op::kSave, name, {"concord"}, true, ""}, bus_->now()));
   }
   [[nodiscard]] std::size_t layers_saved(const std::string& name) const {
     const auto bytes = read_whole_file(site_.state / "maps" / (name + ".concord"), 1'000'000);
@@ -29,7 +30,7 @@ class PlacementTest : public PeopleStation {
     std::filesystem::create_directories(site_.state / "maps");
     EXPECT_TRUE(write_whole_file(site_.state / "maps/other.concord", *std::move(writer).finish()));
     return ask("in/map_request",
-               encode(MapRequest{"load", MapRequest::Op::kLoad, "other", "concord", false, ""}, bus_->now()));
+               encode(MapRequest{"load", MapRequest::Op::kLoad, "other", {"concord"}, false, ""}, bus_->now()));
   }
 };
 

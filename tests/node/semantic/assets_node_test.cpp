@@ -87,16 +87,19 @@ TEST_F(AssetsNodeTest, AModelIsMovedAsOneThingAndKeepsItsName) {
   ASSERT_TRUE(answer.ok) << answer.message;
   run();
   EXPECT_EQ(places(), "-|box 1|-|");
+  EXPECT_EQ(told_x(), 5.0);
   ASSERT_TRUE(move("m2", "a1", 8.0).ok);
   move("m1", "a1", 5.0);  // an old copy does nothing
   run();
   EXPECT_EQ(places(), "-|-|box 1|");
   start();
   EXPECT_EQ(places(), "-|-|box 1|");
+  EXPECT_EQ(told_x(), 8.0);
   ASSERT_TRUE(undo_edit("u1", "asset-m2").ok);
   EXPECT_EQ(places(), "-|box 1|-|");
   ASSERT_TRUE(undo_edit("u2", "asset-m1").ok);
   EXPECT_EQ(places(), "box 1|-|-|");
+  EXPECT_EQ(told_x(), 2.0);
   ASSERT_TRUE(undo_edit("u3", "asset-m1", true).ok);
   EXPECT_EQ(places(), "-|box 1|-|");
   start();
@@ -208,7 +211,7 @@ TEST_F(AssetsNodeTest, ItsOldPlaceRedoneIsWhereItIsAndOneDeleteTakesItOut) {
 TEST_F(AssetsNodeTest, WhatComesWithALoadedMapShowsThoughMergeHasItsEditAlready) {
   ASSERT_TRUE(inject("a1", "cube", 2.0).ok);
   run();
-  const MapRequest save{"s1", MapRequest::Op::kSave, "hall", "concord", false, ""};
+  const MapRequest save{"s1", MapRequest::Op::kSave, "hall", {"concord"}, false, ""};
   Answer saved = ask("in/map_request", encode(save, bus_->now()));
   if (saved.code == "BUSY") saved = ask("in/map_request", encode(save, bus_->now()));
   ASSERT_TRUE(saved.ok) << saved.message;
@@ -217,7 +220,7 @@ TEST_F(AssetsNodeTest, WhatComesWithALoadedMapShowsThoughMergeHasItsEditAlready)
     std::filesystem::remove(site_.state / (std::string("semantic.db") + part));
   start();
   EXPECT_EQ(places(), "|-|-|") << "there, but nobody knows what it is";
-  ask("in/map_request", encode(MapRequest{"o1", MapRequest::Op::kLoad, "hall", "concord", false, ""}, bus_->now()));
+  ask("in/map_request", encode(MapRequest{"o1", MapRequest::Op::kLoad, "hall", {"concord"}, false, ""}, bus_->now()));
   ask("out/answer", encode(Answer{"o1", "merge", true, "OK", "", 9, 3}, bus_->now()));
   int edits = 0;
   bus_->subscribe("in/edit", [&edits](const std::string&, auto) { ++edits; });

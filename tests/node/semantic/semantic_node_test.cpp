@@ -190,7 +190,7 @@ TEST_F(SemanticNodeTest, ASavedMapHasTheLabelsAndALoadedOneGivesThemBack) {
   ASSERT_TRUE(label("l1", "chair", 0, 3).ok);
   ASSERT_TRUE(label("l2", "table", 2, 7).ok);
   ASSERT_TRUE(undo("u1", "l1").ok);
-  const MapRequest save{"s1", MapRequest::Op::kSave, "hall", "concord", false, ""};
+  const MapRequest save{"s1", MapRequest::Op::kSave, "hall", {"concord"}, false, ""};
   Answer saved = ask("in/map_request", encode(save, bus_->now()));
   if (saved.code == "BUSY") saved = ask("in/map_request", encode(save, bus_->now()));
   ASSERT_TRUE(saved.ok) << saved.message;
@@ -203,7 +203,7 @@ TEST_F(SemanticNodeTest, ASavedMapHasTheLabelsAndALoadedOneGivesThemBack) {
     std::filesystem::remove(site_.state / (std::string("semantic.db") + part));
   start();
   EXPECT_EQ(seen(4), "");
-  const MapRequest load{"o1", MapRequest::Op::kLoad, "hall", "concord", false, ""};
+  const MapRequest load{"o1", MapRequest::Op::kLoad, "hall", {"concord"}, false, ""};
   ask("in/map_request", encode(load, bus_->now()));
   EXPECT_TRUE(
       std::ranges::any_of(answers_, [](const Answer& a) { return a.process == "semantic" && a.code == "BUSY"; }));

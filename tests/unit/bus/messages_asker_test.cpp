@@ -45,7 +45,7 @@ TEST(MessagesAsker, ATextOverItsLimitIsRefusedToItsAsker) {
   refused(HistoryRequest{"r", long_text, "", {}, 0, 0, 0, 1});
   refused(AgentRequest{"r", long_text, AgentRequest::Op::kReset});
   refused(DownsampleRequest{"r", long_text, 1});
-  refused(MapRequest{"r", MapRequest::Op::kSave, long_text, "bt", false, ""});
+  refused(MapRequest{"r", MapRequest::Op::kSave, long_text, {"bt"}, false, ""});
   PathRequest path;
   path.id = "r";
   path.robot = long_text;

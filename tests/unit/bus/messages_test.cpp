@@ -149,17 +149,19 @@ TEST(Messages, paths_are_checked) {
 }
 
 TEST(Messages, map_requests_are_checked) {
-  MapRequest request{"r", MapRequest::Op::kSave, "../../etc/passwd", "bt", false, ""};
+  MapRequest request{"r", MapRequest::Op::kSave, "../../etc/passwd", {"bt"}, false, ""};
   expect_refused(decode<MapRequest>(encode(request, 1)), Code::kBadName, "r");
   request.map = "hall";
-  request.format = "sh";
-  expect_refused(decode<MapRequest>(encode(request, 1)), Code::kBadRequest, "r");
-  request.format = "";
-  expect_refused(decode<MapRequest>(encode(request, 1)), Code::kBadRequest, "r");
-  request.format = "concord";
+  using Formats = std::vector<std::string>;
+  for (const Formats& none : {Formats{"sh"}, Formats{}, Formats{"bt", ""}, Formats{"bt", "ot", "bt"}}) {
+    request.formats = none;
+    expect_refused(decode<MapRequest>(encode(request, 1)), Code::kBadRequest, "r");
+  }
+  request.formats = {"concord", "bt", "ot"};
   EXPECT_TRUE(decode<MapRequest>(encode(request, 1)));
-  request.format = "";
   request.op = MapRequest::Op::kLoad;
+  expect_refused(decode<MapRequest>(encode(request, 1)), Code::kBadRequest, "r");
+  request.formats = {};
   EXPECT_TRUE(decode<MapRequest>(encode(request, 1)));
   request.agent = "no agent";
   expect_refused(decode<MapRequest>(encode(request, 1)), Code::kBadName, "r");

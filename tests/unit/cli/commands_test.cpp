@@ -324,6 +324,7 @@ TEST_F(Commands, WhatCannotBeMeantIsRefusedBeforeAnyoneIsAsked) {
       {"localise", "robot1", "0 0 0 0 0 0 1", "--at", "noon"},
       {"load", "../map"},
       {"save", "map", "--format", "png"},
+      {"save", "map", "--format", "bt,png"},
   };
   for (const auto& arguments : wrong) {
     std::string line;

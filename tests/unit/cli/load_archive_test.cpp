@@ -17,7 +17,7 @@ class LoadArchive : public testing::Test {
     common_.site_file = site_;
     common_.timeout = 2.0;
     live_ = std::make_unique<Live>(common_);
-    request_ = {live_->new_id(), MapRequest::Op::kLoad, "hall", "concord", false, ""};
+    request_ = {live_->new_id(), MapRequest::Op::kLoad, "hall", {"concord"}, false, ""};
   }
   void TearDown() override { std::filesystem::remove(site_); }
 

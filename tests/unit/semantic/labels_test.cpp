@@ -349,7 +349,7 @@ TEST(Labels, ModelsThatMoveTakeNoRoomFromLabelsOfPeople) {
   EXPECT_EQ(world.labels.waiting(1).at(0).edit_id, "asset-m1");
   world.labels.set_edit("asset-m1", {true, 1, false}, touched);
   EXPECT_EQ(world.labels.waiting(1).at(0).edit_id, "asset-m10") << "just what merge has said nothing of";
-  EXPECT_EQ(world.labels.asset_of({1, 1}), "lift");
+  EXPECT_EQ(world.labels.model_of({1, 1})->asset, "lift");
   EXPECT_TRUE(world.label("box", row(0, 3, -9)));
 }
 

@@ -5,6 +5,7 @@ import { composed, distance, fromXr, fromYaw, inverse, kIdentity, levelled, pose
 import type { Store } from "../../../hmd_bridge/web/src/base/kept";
 import { News } from "../../../hmd_bridge/web/src/base/news";
 import { AlignSession } from "../../../hmd_bridge/web/src/edit/align_session";
+import { keptTurnAt } from "../../../hmd_bridge/web/src/edit/asset_pose";
 import { conflictWords, ConflictTour, cornersOf } from "../../../hmd_bridge/web/src/edit/conflict_tour";
 import { Editor } from "../../../hmd_bridge/web/src/edit/editor";
 import { Obstacles } from "../../../hmd_bridge/web/src/edit/obstacles";
@@ -24,6 +25,12 @@ function store(): Store {
 
 const select = (tool: Tool, points: Vec3[], height: number | null = 2): Selection => points.reduce(withPoint, begun(tool, 0.05, height));
 const near = (a: Vec3, b: Vec3): void => assert(distance(a, b) < 1e-9, `${a} is not ${b}`);
+
+test("an asset that is moved keeps its turn", () => {
+  const turned = fromYaw(1.2);
+  assert.deepEqual(keptTurnAt({ T_map_asset: { position: [1, 2, 3], rotation: turned } }, [4, 5, 0]), { position: [4, 5, 0], rotation: turned });
+  assert.deepEqual(keptTurnAt({}, [4, 5, 0]), { position: [4, 5, 0], rotation: kIdentity.rotation });
+});
 
 test("a box is closed by its second corner and stands on the lower one", () => {
   const box = select("box", [[3, 1, 0.1], [1, 2, 0.3], [9, 9, 9]]);
