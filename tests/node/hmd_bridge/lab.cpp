@@ -25,7 +25,7 @@ Lab::Lab(With with, double resolution) {
     publish_status_each_second(context("semantic"));
     semantic = std::make_unique<SemanticNode>(context("semantic"), std::launch::deferred);
   }
-  ingest = std::make_unique<IngestNode>(context("ingest"));
+  if (with != kWithoutIngest) ingest = std::make_unique<IngestNode>(context("ingest"));
   if (with != kWithoutMerge) merge = std::make_unique<MergeNode>(context("merge"));
   planner = std::make_unique<PlannerNode>(context("planner"), std::launch::deferred);
   gate = std::make_unique<Gate>(random_secret);

@@ -42,7 +42,7 @@ class Lab {
  public:
   static constexpr std::int64_t kStart = 1'700'000'000'000'000;
 
-  enum With { kAll, kWithoutMerge, kWithoutAlign, kWithoutSemantic };
+  enum With { kAll, kWithoutMerge, kWithoutAlign, kWithoutSemantic, kWithoutIngest };
   explicit Lab(With with = kAll, double resolution = 0.1);
   ~Lab();
   Lab(const Lab&) = delete;
