@@ -38,7 +38,7 @@ void Lab::restart_bridge() {
   Hub::Config config = hub_config(site);
   config.local_role = Role::kRobot;
   bridge = std::make_unique<BridgeNode>(NodeContext{*bridge_bus, counters, site, "hmd-bridge", bus->now()}, *gate,
-                                        config, std::launch::deferred);
+                                        config, std::launch::deferred, "/models/", map_limits);
   run(1.5);
 }
 

@@ -63,6 +63,7 @@ class Lab {
   void robot_at(double x, double y);
 
   Site site;
+  MapLimits map_limits;  ///< from the next restart of the bridge on
   Counters counters;
   std::unique_ptr<LockstepBus> bus;
   std::unique_ptr<IngestNode> ingest;
