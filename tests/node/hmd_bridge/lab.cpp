@@ -23,7 +23,7 @@ Lab::Lab(With with, double resolution) {
   }
   if (with != kWithoutSemantic) {
     publish_status_each_second(context("semantic"));
-    semantic = std::make_unique<SemanticNode>(context("semantic"), std::launch::deferred);
+    restart_semantic();
   }
   if (with != kWithoutIngest) ingest = std::make_unique<IngestNode>(context("ingest"));
   if (with != kWithoutMerge) merge = std::make_unique<MergeNode>(context("merge"));
@@ -40,6 +40,13 @@ void Lab::restart_bridge() {
   bridge = std::make_unique<BridgeNode>(NodeContext{*bridge_bus, counters, site, "hmd-bridge", bus->now()}, *gate,
                                         config, std::launch::deferred, "/models/", map_limits);
   run(1.5);
+}
+
+void Lab::restart_semantic() {
+  semantic.reset();
+  semantic_bus = std::make_unique<PartOfBus>(*bus);
+  semantic = std::make_unique<SemanticNode>(NodeContext{*semantic_bus, counters, site, "semantic", bus->now()},
+                                            std::launch::deferred);
 }
 
 Lab::~Lab() {

@@ -59,6 +59,7 @@ class Lab {
   /// robot1 says nothing any more.
   void stop_robot() { sent_.erase("robot1"); }
   void restart_bridge();
+  void restart_semantic();
   /// Where robot1 is, in its own frame.
   void robot_at(double x, double y);
 
@@ -70,6 +71,7 @@ class Lab {
   std::unique_ptr<MergeNode> merge;
   std::unique_ptr<PlannerNode> planner;
   std::unique_ptr<AlignNode> align;
+  std::unique_ptr<PartOfBus> semantic_bus;
   std::unique_ptr<SemanticNode> semantic;
   std::unique_ptr<Gate> gate;
   std::unique_ptr<PartOfBus> bridge_bus;
