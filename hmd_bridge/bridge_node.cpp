@@ -39,13 +39,13 @@ Hub::Config hub_config(const Site& site) {
 }
 
 BridgeNode::BridgeNode(const NodeContext& context, Gate& gate, const Hub::Config& config, std::launch how,
-                       std::string models)
+                       std::string models, const MapLimits& limits)
     : context_(context),
       hub_(gate, config, handlers()),
       world_(context, hub_),
       asker_(context),
       desk_(context, hub_, world_, asker_, std::move(models)),
-      own_maps_(desk_, how) {
+      own_maps_(desk_, how, limits) {
   world_.on_path = [this](const concord::Path& path) { on_path(path); };
   hear_parts();
   hear_alignments(desk_);

@@ -16,7 +16,7 @@ class BridgeNode {
   /// still.
   /// @param models the address below which NAME.glb is an asset's model, for who is told of it.
   BridgeNode(const NodeContext& context, Gate& gate, const Hub::Config& config, std::launch how,
-             std::string models = "/models/");
+             std::string models = "/models/", const MapLimits& limits = {});
   BridgeNode(const BridgeNode&) = delete;
   BridgeNode& operator=(const BridgeNode&) = delete;
 

@@ -39,6 +39,11 @@ void LookJudge::begin() {
   if (waiting_.empty()) return;
   Look& look = waiting_.front();
   bytes_ -= look.frame.body.size();
+  if (const auto room = look.has_room(); !room) {
+    if (look.anew) look.mapper->end_sequence();
+    judged_ = Judged{tl::unexpected(room.error()), {}, 0, look.mapper->bytes()};
+    return;
+  }
   running_ = std::async(how_, [how = how_, mapper = look.mapper, anew = look.anew,
                                frame = std::make_shared<PackedFrame>(std::move(look.frame))] {
     // The thread's own; that it could not be said changes nothing of what comes out.
@@ -61,7 +66,7 @@ void LookJudge::hand_over() {
   waiting_.pop_front();
   judged_.reset();
   handed_ = 0;
-  last.on_end(judged.taken, judged.occupied);
+  last.on_end(judged);
 }
 
 }  // namespace concord::hmd

@@ -26,7 +26,9 @@ class LookJudge {
     PackedFrame frame;
     /// What changed, in turns; then the outcome.
     std::function<void(BrickIndex, Brick)> on_brick;
-    std::function<void(const Result<void>&, std::int64_t occupied)> on_end;
+    std::function<void(const Judged&)> on_end;
+    /// Asked when its turn has come: a refusal is what comes of it.
+    std::function<Result<void>()> has_room = [] { return Result<void>(); };
   };
 
   /// @param how async; or deferred, where time stands still.

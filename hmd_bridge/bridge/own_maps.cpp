@@ -30,7 +30,8 @@ OwnMaps::Own::Own(const NodeContext& context, const std::string& agent)
               .boot_id = boot_id},
              map) {}
 
-OwnMaps::OwnMaps(Desk& desk, std::launch how) : desk_(desk), judge_(desk.context.bus, how) {
+OwnMaps::OwnMaps(Desk& desk, std::launch how, const MapLimits& limits)
+    : desk_(desk), judge_(desk.context.bus, how), limits_(limits) {
   const NodeContext& context = desk_.context;
   listen<FrameOver>(context.bus, context.counters, context.process, "out/frame_over/.*",
                     [this](const std::string& channel, const FrameOver& over) {
@@ -80,14 +81,31 @@ std::optional<std::string> OwnMaps::not_for_clients(const std::string& agent, Ro
   return std::nullopt;
 }
 
-std::shared_ptr<OwnMaps::Own> OwnMaps::own_of(const std::string& agent) {
-  if (const auto it = by_agent_.find(agent); it != by_agent_.end()) return it->second;
-  if (by_agent_.size() >= kMost) {
-    const auto oldest = std::min_element(by_agent_.begin(), by_agent_.end(),
-                                         [](const auto& a, const auto& b) { return a.second->used < b.second->used; });
-    by_agent_.erase(oldest);
+std::shared_ptr<OwnMaps::Own> OwnMaps::own_of(const Session& session) {
+  auto it = by_agent_.find(session.agent);
+  if (it == by_agent_.end()) {
+    if (!leave(room_for_agent(held(), session.identity.name, limits_))) return nullptr;
+    it = by_agent_.emplace(session.agent, std::make_shared<Own>(desk_.context, session.agent)).first;
   }
-  return by_agent_.emplace(agent, std::make_shared<Own>(desk_.context, agent)).first->second;
+  it->second->identity = session.identity.name;
+  return it->second;
+}
+
+std::vector<HeldMap> OwnMaps::held() const {
+  std::set<std::string> spoken_for;
+  for (const auto& [number, session] : desk_.hub.sessions()) spoken_for.insert(session.agent);
+  std::vector<HeldMap> held;
+  for (const auto& [agent, own] : by_agent_) {
+    const std::size_t bytes = own->mapper_bytes + own->map.brick_count() * RoomMapper::kBrickBytes;
+    held.push_back({agent, own->identity, bytes, own->used, spoken_for.contains(agent)});
+  }
+  return held;
+}
+
+bool OwnMaps::leave(const Leaving& leaving) {
+  if (!leaving) return false;
+  for (const std::string& agent : *leaving) by_agent_.erase(agent);
+  return true;
 }
 
 void OwnMaps::begin(const Session& session, bool resumed) {
@@ -98,7 +116,9 @@ void OwnMaps::begin(const Session& session, bool resumed) {
 /// Its pose makes it an agent that people see and place, also before it has scanned anything.
 void OwnMaps::tracking(const Session& session) {
   if (session.agent.empty() || session.tracking_lost || !session.T_own_head) return;
-  Own& own = *own_of(session.agent);
+  const auto found = own_of(session);
+  if (!found) return;  // its first look is told why
+  Own& own = *found;
   const std::int64_t now = desk_.now();
   if (now - own.pose_sent < kPoses || session.frame_id == own.over) return;
   own.pose_sent = own.used = now;
@@ -110,13 +130,15 @@ Granted<std::shared_ptr<OwnMaps::Own>> OwnMaps::open(const Session& session) {
   if (session.agent.empty()) return no(Code::kBadFrame, "this client is no agent; say agent and frame_id in hello");
   if (session.tracking_lost)
     return no(Code::kTrackingLost, "the device does not know where it is; look around until it does");
-  const std::shared_ptr<Own> own = own_of(session.agent);
+  const std::shared_ptr<Own> own = own_of(session);
+  if (!own) return no(Code::kBusy, "as many agents scan as can be; ask again when one has gone");
   if (own->over == session.frame_id) return no(Code::kBadFrame, "this frame was reset; begin another frame_id");
   own->used = desk_.now();
   if (own->frame_id != session.frame_id) {
     own->mapper = std::make_shared<RoomMapper>(desk_.context.site.resolution);
     own->frame_id = session.frame_id;
     own->map = BrickMap();
+    own->mapper_bytes = 0;
     own->changed.clear();
     own->occupied = 0;
     own->anew = false;
@@ -136,15 +158,22 @@ void OwnMaps::upload(const Ask& ask, PackedFrame frame) {
     own->map.set(index, std::move(brick));
     own->changed.insert(index);
   };
-  look.on_end = [this, ask, own, mapper = own->mapper, head = look.frame.head](const Result<void>& taken,
-                                                                               std::int64_t occupied) {
-    if (!taken) return desk_.hub.refuse(ask, upload_code(taken.error()), taken.error().message);
+  look.on_end = [this, ask, own, mapper = own->mapper, head = look.frame.head](const Judged& judged) {
+    if (own->mapper == mapper) own->mapper_bytes = judged.bytes;
+    if (!judged.taken) return desk_.hub.refuse(ask, upload_code(judged.taken.error()), judged.taken.error().message);
+    const std::int64_t occupied = judged.occupied;
     if (own->mapper == mapper) own->occupied = occupied;
     if (head.kind == FrameKind::kMesh) {
       desk_.hub.answer(ask, UploadMeshAnswer{head.revision, occupied});
     } else {
       desk_.hub.answer(ask, UploadVoxelsAnswer{head.revision, occupied});
     }
+  };
+  look.has_room = [this, own] {
+    if (leave(room_for_look(held(), own->identity, limits_))) return Result<void>();
+    return Result<void>(
+        refuse(concord::Code::kTooLarge,
+               "the maps of all headsets, or of all that are yours, take too much; reset one, or leave"));
   };
   if (!judge_.offer(std::move(look)))
     return desk_.hub.refuse(ask, Code::kRate, "looks before this one are still being judged; offer it again");

@@ -5,20 +5,20 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "bridge/desk.hpp"
 #include "bridge/look_judge.hpp"
 #include "bus/brick_stream.hpp"
+#include "mapper/map_budget.hpp"
 
 namespace concord::hmd {
 
 /// Clients that are agents: what they scan becomes their submap on the bus, and where they are their pose.
 class OwnMaps {
  public:
-  static constexpr std::size_t kMost = 64;
-
   /// @param how looks are judged: beside the loop, or within it.
-  OwnMaps(Desk& desk, std::launch how);
+  OwnMaps(Desk& desk, std::launch how, const MapLimits& limits);
   OwnMaps(const OwnMaps&) = delete;
   OwnMaps& operator=(const OwnMaps&) = delete;
 
@@ -42,18 +42,25 @@ class OwnMaps {
     std::string frame_id;  ///< empty: not begun
     std::string over;      ///< a frame of it that was reset
     std::int64_t pose_sent = 0, used = 0;
+    std::string identity;          ///< who spoke for it last
+    std::size_t mapper_bytes = 0;  ///< after the last look
     bool begun = false;  ///< its sender has said something: until then nothing is void that others have of the agent
   };
 
   void hear_others();
   void heard_other(const std::string& agent);
-  [[nodiscard]] std::shared_ptr<Own> own_of(const std::string& agent);
+  /// Null: there is no room for another agent.
+  [[nodiscard]] std::shared_ptr<Own> own_of(const Session& session);
+  [[nodiscard]] std::vector<HeldMap> held() const;
+  /// Drops those maps. False: there is no room.
+  bool leave(const Leaving& leaving);
   /// The map that a client scans into now, or why it may not.
   [[nodiscard]] Granted<std::shared_ptr<Own>> open(const Session& session);
   void publish(Own& own);
 
   Desk& desk_;
   LookJudge judge_;
+  MapLimits limits_;
   std::map<std::string, std::shared_ptr<Own>> by_agent_;
   std::map<std::string, std::int64_t> others_;  ///< agents that other processes speak for, and when they did last
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "bridge/requests.hpp"
 #include "core/voxel_boxes.hpp"
@@ -12,6 +13,17 @@ namespace {
 constexpr double kMaxSceneRadius = 20;
 constexpr std::size_t kMaxSceneBoxes = 16'384;
 constexpr std::int64_t kMaxGridCells = 16'000'000;
+/// No reader takes a larger frame, however it is deflated.
+constexpr std::size_t kMaxPoints = kMaxInflatedBytes / kPointBytes;
+
+/// Points lie on surfaces: cells twice as wide hold a quarter of them. A tenth more, as rooms are no planes.
+std::string too_many(std::size_t points, double resolution) {
+  const double share = static_cast<double>(points) / static_cast<double>(kMaxPoints);
+  char enough[40];
+  std::snprintf(enough, sizeof(enough), "%.2f", std::ceil(resolution * std::sqrt(share) * 1.1 * 100) / 100);
+  return std::to_string(points) + " points, and a frame holds " + std::to_string(kMaxPoints) +
+         ": ask for a resolution of about " + enough + " m";
+}
 
 struct Looked {
   LayerCopy* copy;
@@ -94,11 +106,13 @@ void work_on(Desk& desk, const Ask& ask, const MinimapRequest& request) {
         }
         std::vector<Eigen::Vector3f> points;
         for (const auto& [number, part] : parts) points.insert(points.end(), part.points.begin(), part.points.end());
+        const Downsampled& first = parts.begin()->second;
+        if (points.size() > kMaxPoints)
+          return desk.hub.refuse(ask, Code::kTooLarge, too_many(points.size(), first.resolution));
         const FrameHead head{.kind = FrameKind::kPoints,
                              .stream = static_cast<std::uint32_t>(ask.id),
                              .count = static_cast<std::uint32_t>(points.size())};
         desk.hub.send(ask, std::make_shared<const Bytes>(make_frame(head, points_payload(points))));
-        const Downsampled& first = parts.begin()->second;
         desk.hub.answer(ask, MinimapAnswer{first.agent, first.frame_id, static_cast<std::int64_t>(points.size())});
       });
 }

@@ -18,7 +18,7 @@ Result<void> take(RoomMapper& mapper, PackedFrame packed) {
 }  // namespace
 
 Judged judge(RoomMapper& mapper, PackedFrame frame) {
-  Judged judged{take(mapper, std::move(frame)), {}, mapper.occupied()};
+  Judged judged{take(mapper, std::move(frame)), {}, mapper.occupied(), mapper.bytes()};
   for (const BrickIndex index : mapper.take_changed()) {
     const Brick* brick = mapper.map().find(index);
     judged.changed.emplace_back(index, brick != nullptr ? *brick : Brick());

@@ -27,6 +27,7 @@ class RoomMapper {
   static constexpr std::size_t kMaxRays = 2'000;  ///< of one look; of more met cells each n-th, in turns
   static constexpr std::size_t kMaxBricks = 200'000;
   static constexpr std::size_t kMaxMeshes = 4096;
+  static constexpr std::size_t kBrickBytes = 1100;  ///< of memory that a brick takes at most, about
 
   explicit RoomMapper(double resolution) : resolution_(resolution) {}
 
@@ -44,12 +45,17 @@ class RoomMapper {
   /// Bricks that have changed since the last call, ascending.
   [[nodiscard]] std::vector<BrickIndex> take_changed();
   [[nodiscard]] std::int64_t occupied() const { return occupied_; }
+  /// Of memory, about.
+  [[nodiscard]] std::size_t bytes() const {
+    return cells_.size() * kCellsBytes + map_.brick_count() * kBrickBytes + met_cells_ * sizeof(VoxelIndex);
+  }
   [[nodiscard]] std::int64_t known() const { return static_cast<std::int64_t>(map_.known_count()); }
 
  private:
   /// By voxel: 0 unknown, 1 free, from kBegin on percent.
   using Cells = std::array<std::uint8_t, kBrickVoxels>;
   static constexpr std::uint8_t kUnknownCell = 0, kFreeCell = 1;
+  static constexpr std::size_t kCellsBytes = sizeof(Cells) + 40;
 
   [[nodiscard]] Result<std::vector<VoxelIndex>> cells_of(const MeshPart& part, std::size_t& budget) const;
   void judge(const std::unordered_map<BrickIndex, VoxelMask, IndexHash>& met, const Eigen::Vector3d& sensor);

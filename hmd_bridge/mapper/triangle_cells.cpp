@@ -15,6 +15,13 @@ bool separated(const TriangleCells::Corners& c, const Eigen::Vector3d& axis) {
   return std::min({a, b, d}) > reach || std::max({a, b, d}) < -reach;
 }
 
+/// Its plane is any plane through that line: no axis leaves few cells to look at.
+bool is_line(const TriangleCells::Corners& corners) {
+  constexpr double kSine = 1e-9;
+  const Eigen::Vector3d a = corners[1] - corners[0], b = corners[2] - corners[0];
+  return a.cross(b).norm() <= kSine * a.norm() * b.norm();
+}
+
 }  // namespace
 
 bool meets(const TriangleCells::Corners& corners, VoxelIndex cell) {
@@ -34,6 +41,7 @@ bool meets(const TriangleCells::Corners& corners, VoxelIndex cell) {
 }
 
 bool TriangleCells::append(Corners corners, std::size_t& budget, std::vector<VoxelIndex>& out) {
+  if (is_line(corners)) return true;
   for (Eigen::Vector3d& corner : corners) corner.array() += kOnFace;
   const Eigen::Vector3d low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]);
   const Eigen::Vector3d high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]);
@@ -43,18 +51,13 @@ bool TriangleCells::append(Corners corners, std::size_t& budget, std::vector<Vox
   int k = 0;
   normal.cwiseAbs().maxCoeff(&k);
   const int i = (k + 1) % 3, j = (k + 2) % 3;
-  const bool flat = normal[k] == 0;  // a line or a point: its whole box is looked at
+  const double su = -normal[i] / normal[k], sv = -normal[j] / normal[k];
+  const double half = 0.5 * (std::abs(su) + std::abs(sv)) + kOnFace;
   const auto cell = [](double at) { return static_cast<std::int32_t>(std::floor(at)); };
   for (std::int32_t u = cell(low[i]); u <= cell(high[i]); ++u) {
     for (std::int32_t v = cell(low[j]); v <= cell(high[j]); ++v) {
-      double from = low[k], to = high[k];
-      if (!flat) {
-        const double su = -normal[i] / normal[k], sv = -normal[j] / normal[k];
-        const double at = corners[0][k] + su * (u + 0.5 - corners[0][i]) + sv * (v + 0.5 - corners[0][j]);
-        const double half = 0.5 * (std::abs(su) + std::abs(sv)) + kOnFace;
-        from = std::max(from, at - half);
-        to = std::min(to, at + half);
-      }
+      const double at = corners[0][k] + su * (u + 0.5 - corners[0][i]) + sv * (v + 0.5 - corners[0][j]);
+      const double from = std::max(low[k], at - half), to = std::min(high[k], at + half);
       if (budget-- == 0) return ++budget, false;
       for (std::int32_t w = cell(from); w <= cell(to); ++w) {
         if (budget-- == 0) return ++budget, false;

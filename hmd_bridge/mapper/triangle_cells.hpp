@@ -11,9 +11,10 @@ namespace concord::hmd {
 
 /// Calls `visit(VoxelIndex)` for each cell that a triangle meets; corners in units of a cell's edge. A cell holds its
 /// lower faces and not its upper ones, so a floor that lies on the face between two layers is in the upper one.
-/// Looks at few cells that are not met, whatever the triangle's slope. @return false if there are more cells to look at
-/// than `budget`, which is less by those that were. (Separating axes: Akenine-Moeller, "Fast 3D Triangle-Box Overlap
-/// Testing", 2001.)
+/// A triangle whose corners lie on one line, to a billionth, covers no area and meets none; its neighbours have its
+/// edges. Looks at few cells that are not met, whatever the triangle's slope. @return false if there are more cells to
+/// look at than `budget`, which is less by those that were. (Separating axes: Akenine-Moeller, "Fast 3D Triangle-Box
+/// Overlap Testing", 2001.)
 class TriangleCells {
  public:
   using Corners = std::array<Eigen::Vector3d, 3>;

@@ -16,7 +16,8 @@ namespace concord::hmd {
 
 inline constexpr std::size_t kFrameHeader = 24;
 inline constexpr std::size_t kMaxBinaryBytes = 4 << 20;     ///< of one binary frame from a client
-inline constexpr std::size_t kMaxInflatedBytes = 16 << 20;  ///< of its payload
+inline constexpr std::size_t kMaxInflatedBytes = 16 << 20;  ///< of its payload, and of one to a client
+inline constexpr std::size_t kPointBytes = 12;              ///< of a points frame
 inline constexpr int kLevels = 6;
 
 enum class FrameKind : std::uint8_t {

@@ -136,7 +136,7 @@ Result<std::vector<BlockIndex>> read_forget(const BinaryFrame& frame) {
 
 Bytes points_payload(const std::vector<Eigen::Vector3f>& points) {
   Bytes out;
-  out.reserve(points.size() * 12);
+  out.reserve(points.size() * kPointBytes);
   for (const Eigen::Vector3f& p : points) {
     for (int axis = 0; axis < 3; ++axis) append_float(out, p[axis]);
   }

@@ -23,9 +23,9 @@ Lab::Lab(With with, double resolution) {
   }
   if (with != kWithoutSemantic) {
     publish_status_each_second(context("semantic"));
-    semantic = std::make_unique<SemanticNode>(context("semantic"), std::launch::deferred);
+    restart_semantic();
   }
-  ingest = std::make_unique<IngestNode>(context("ingest"));
+  if (with != kWithoutIngest) ingest = std::make_unique<IngestNode>(context("ingest"));
   if (with != kWithoutMerge) merge = std::make_unique<MergeNode>(context("merge"));
   planner = std::make_unique<PlannerNode>(context("planner"), std::launch::deferred);
   gate = std::make_unique<Gate>(random_secret);
@@ -38,8 +38,15 @@ void Lab::restart_bridge() {
   Hub::Config config = hub_config(site);
   config.local_role = Role::kRobot;
   bridge = std::make_unique<BridgeNode>(NodeContext{*bridge_bus, counters, site, "hmd-bridge", bus->now()}, *gate,
-                                        config, std::launch::deferred);
+                                        config, std::launch::deferred, "/models/", map_limits);
   run(1.5);
+}
+
+void Lab::restart_semantic() {
+  semantic.reset();
+  semantic_bus = std::make_unique<PartOfBus>(*bus);
+  semantic = std::make_unique<SemanticNode>(NodeContext{*semantic_bus, counters, site, "semantic", bus->now()},
+                                            std::launch::deferred);
 }
 
 Lab::~Lab() {

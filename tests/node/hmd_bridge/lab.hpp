@@ -42,7 +42,7 @@ class Lab {
  public:
   static constexpr std::int64_t kStart = 1'700'000'000'000'000;
 
-  enum With { kAll, kWithoutMerge, kWithoutAlign, kWithoutSemantic };
+  enum With { kAll, kWithoutMerge, kWithoutAlign, kWithoutSemantic, kWithoutIngest };
   explicit Lab(With with = kAll, double resolution = 0.1);
   ~Lab();
   Lab(const Lab&) = delete;
@@ -59,16 +59,19 @@ class Lab {
   /// robot1 says nothing any more.
   void stop_robot() { sent_.erase("robot1"); }
   void restart_bridge();
+  void restart_semantic();
   /// Where robot1 is, in its own frame.
   void robot_at(double x, double y);
 
   Site site;
+  MapLimits map_limits;  ///< from the next restart of the bridge on
   Counters counters;
   std::unique_ptr<LockstepBus> bus;
   std::unique_ptr<IngestNode> ingest;
   std::unique_ptr<MergeNode> merge;
   std::unique_ptr<PlannerNode> planner;
   std::unique_ptr<AlignNode> align;
+  std::unique_ptr<PartOfBus> semantic_bus;
   std::unique_ptr<SemanticNode> semantic;
   std::unique_ptr<Gate> gate;
   std::unique_ptr<PartOfBus> bridge_bus;

@@ -197,6 +197,44 @@ std::map<std::pair<std::uint32_t, std::uint32_t>, std::int64_t> shown(const Clie
   return all;
 }
 
+/// What the latest frame of the block at the origin says of a voxel in it.
+std::pair<std::uint32_t, std::uint32_t> thing_at(const Client& client, std::uint32_t x, std::uint32_t y,
+                                                 std::uint32_t z) {
+  LabelContent latest;
+  for (const BinaryFrame& frame : client.frames) {
+    if (frame.head.kind != FrameKind::kLabels) continue;
+    if (LabelContent content = read_labels(frame).value(); content.block == BlockIndex{0, 0, 0}) latest = content;
+  }
+  std::uint32_t at = 0;
+  for (const auto& run : latest.runs) {
+    at += run.gap + run.length;
+    const std::uint32_t voxel = x + 64 * y + 4096 * z;
+    const auto& thing = latest.things.at(run.thing);
+    if (voxel < at) return voxel + run.length >= at ? std::pair(thing.label, thing.instance) : std::pair(0U, 0U);
+  }
+  return {};
+}
+
+TEST_F(Labelling, ASemanticThatWasStartedAnewMayGiveTheSameSlotsToOtherThings) {
+  const ListReceiver<LabelSlot> slots(*lab.bus, lab.counters, "out/label_slots", [](const auto&) {});
+  EXPECT_CODE(ana.ask(ViewRequest{Layer::kLabels, {}, Frame::kMap, {3, 3, 0}, {20}, {}}), "OK");
+  labelled("table", box(4, 4, 0, 4.5, 4.5, 0.6));
+  labelled("chair");
+  using Thing = std::pair<std::uint32_t, std::uint32_t>;
+  const Thing table{1, 1}, chair{2, 1};
+  const std::vector<LabelSlot> before = slots.items();
+  ana.read();
+  EXPECT_EQ(thing_at(ana, 42, 42, 3), table);
+  EXPECT_EQ(thing_at(ana, 12, 12, 3), chair);
+  lab.restart_semantic();
+  lab.run(5);
+  ASSERT_EQ(slots.items().size(), before.size());
+  ASSERT_NE(slots.items(), before) << "slots are numbered as bricks come";
+  ana.read();
+  EXPECT_EQ(thing_at(ana, 42, 42, 3), table);
+  EXPECT_EQ(thing_at(ana, 12, 12, 3), chair);
+}
+
 TEST_F(Labelling, TheViewSaysWhichVoxelIsWhat) {
   using All = std::map<std::pair<std::uint32_t, std::uint32_t>, std::int64_t>;
   EXPECT_CODE(ana.ask(ViewRequest{Layer::kLabels, {}, Frame::kMap, {3, 3, 0}, {20}, {}}), "OK");

@@ -120,6 +120,50 @@ TEST_F(Working, MapsAreSavedListedAndLoaded) {
   EXPECT_CODE(ana.ask(LoadRequest{"broken", {}, {}}), "CORRUPT");
 }
 
+/// Says what ingest would say of a submap with so many points.
+void answer_with_points(Lab& lab, std::size_t many) {
+  lab.bus->subscribe(
+      "in/downsample",
+      [&lab, many](const std::string&, std::span<const std::uint8_t> bytes) {
+        const DownsampleRequest asked = decode<DownsampleRequest>(bytes).value();
+        constexpr std::size_t kInPart = 10'000;
+        Downsampled part{asked.id, asked.agent, "odom", asked.resolution, 0, 0, {}};
+        part.parts = static_cast<std::int32_t>((many + kInPart - 1) / kInPart);
+        for (std::size_t first = 0; first < many; first += kInPart, ++part.part) {
+          part.points.clear();
+          for (std::size_t i = first; i < std::min(many, first + kInPart); ++i)
+            part.points.push_back(Eigen::Vector3f::Constant(std::sin(static_cast<float>(i))));
+          lab.bus->publish("out/downsampled", encode(part, lab.bus->now()));
+        }
+        answer(*lab.bus, {asked.id, "ingest", true, "OK", "", 0, static_cast<std::int64_t>(many)});
+      },
+      100);
+}
+
+TEST(Minimaps, OneOfManyMegabytesComesWhole) {
+  Lab lab(Lab::kWithoutIngest);
+  constexpr std::size_t kMany = (16 << 20) / 12;
+  answer_with_points(lab, kMany);
+  Client ana(lab);
+  EXPECT_CODE(ana.hello(), "OK");
+  EXPECT_CODE(ana.ask(MinimapRequest{"robot1", 0.1}), "OK");
+  ASSERT_EQ(ana.frames.size(), 1u);
+  EXPECT_EQ(ana.frames[0].payload.size(), kMany * 12);
+  EXPECT_GT(ana.bytes, 4 << 20) << "on the wire";
+}
+
+TEST(Minimaps, OneThatNoReaderTakesIsRefusedInWordsThatHelp) {
+  Lab lab(Lab::kWithoutIngest);
+  answer_with_points(lab, (16 << 20) / 12 + 1);
+  Client ana(lab);
+  EXPECT_CODE(ana.hello(), "OK");
+  const Json refused = ana.ask(MinimapRequest{"robot1", 0.1});
+  EXPECT_CODE(refused, "TOO_LARGE");
+  EXPECT_NE(refused["error"]["message"].get<std::string>().find("0.12 m"), std::string::npos) << refused;
+  EXPECT_TRUE(ana.frames.empty());
+  EXPECT_CODE(ana.ask(MapsRequest{}), "OK") << "and goes on";
+}
+
 TEST_F(Working, AnyAgentCanBeLookedAtOneAfterTheOther) {
   for (int i = 0; i < 40; ++i) {
     const std::string agent = "cart" + std::to_string(i);

@@ -122,9 +122,9 @@ TEST(LookJudge, HandsOverALargeLookInTurns) {
   std::int64_t occupied = 0;
   ASSERT_TRUE(judge.offer({"quest", std::make_shared<RoomMapper>(0.1), false, read_packed(bytes).value(),
                            [&](BrickIndex, Brick) { ++since; },
-                           [&](const Result<void>& taken, std::int64_t n) {
-                             EXPECT_TRUE(taken);
-                             occupied = n;
+                           [&](const Judged& judged) {
+                             EXPECT_TRUE(judged.taken);
+                             occupied = judged.occupied;
                            }}));
   for (int i = 0; i < 20 && occupied == 0; ++i) {
     bus.advance_to(bus.now() + 5'000);
@@ -134,6 +134,39 @@ TEST(LookJudge, HandsOverALargeLookInTurns) {
   EXPECT_EQ(occupied, 8000);
   EXPECT_EQ(bricks, 8000u);
   EXPECT_EQ(most, LookJudge::kBricksOfATurn);
+}
+
+TEST(OwnMaps, OverTheBudgetALookIsRefusedAndNobodyLosesTheirMap) {
+  Lab lab;
+  lab.map_limits.bytes = 2'000;  // a brick's
+  lab.restart_bridge();
+  Client ana(lab), bert(lab);
+  EXPECT_CODE(ana.hello("quest"), "OK");
+  EXPECT_CODE(bert.hello("pico"), "OK");
+  const Bytes look = voxels_payload(voxel_look(0.1, true));
+  EXPECT_CODE(ana.upload(FrameKind::kVoxels, 1, 0, look), "OK");
+  EXPECT_CODE(bert.upload(FrameKind::kVoxels, 1, 0, look), "TOO_LARGE");
+  EXPECT_CODE(ana.upload(FrameKind::kVoxels, 1, 1, look), "TOO_LARGE");
+  EXPECT_CODE(ana.ask(SendMapRequest{false}), "OK") << "what she has scanned is there";
+  ana.lose();
+  EXPECT_CODE(bert.upload(FrameKind::kVoxels, 1, 0, look), "TOO_LARGE") << "she may come back";
+  for (int i = 0; i < 13; ++i) lab.run(10), bert.note(CreditNotice{1});
+  EXPECT_CODE(bert.upload(FrameKind::kVoxels, 1, 0, look), "OK") << "what nobody speaks for makes room";
+}
+
+TEST(OwnMaps, OneIdentityHoldsAFewAgents) {
+  Lab lab;
+  lab.map_limits.agents_of_one = 2;
+  lab.restart_bridge();
+  Client first(lab), second(lab), third(lab);
+  EXPECT_CODE(first.hello("quest1"), "OK");
+  EXPECT_CODE(second.hello("quest2"), "OK");
+  EXPECT_CODE(third.hello("quest3"), "OK");
+  const Bytes look = voxels_payload(voxel_look(0.1, true));
+  EXPECT_CODE(first.upload(FrameKind::kVoxels, 1, 0, look), "OK");
+  EXPECT_CODE(second.upload(FrameKind::kVoxels, 1, 0, look), "OK");
+  EXPECT_CODE(third.upload(FrameKind::kVoxels, 1, 0, look), "BUSY");
+  EXPECT_CODE(first.upload(FrameKind::kVoxels, 1, 1, look), "OK");
 }
 
 TEST_F(Bridge, AnEmptyLookAfterARestartLeavesTheSubmapAlone) {

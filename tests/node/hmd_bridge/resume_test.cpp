@@ -145,5 +145,54 @@ TEST_F(Bridge, FramesOfALostAnswerComeAgainWithIt) {
   EXPECT_EQ(back.frames[0].head.kind, FrameKind::kPoints);
 }
 
+class Parked : public Bridge {
+ protected:
+  /// Somebody comes in from this address with a token, or from this machine, and loses the connection.
+  std::string park(const std::string& name, const Peer& peer) {
+    Client client(lab, peer);
+    const std::string session = client.ask(hello(name, peer))["answer"]["session"];
+    client.lose();
+    lab.run(0.1);
+    return session;
+  }
+  bool is_kept(const std::string& name, const Peer& peer, const std::string& session) {
+    HelloRequest again = hello(name, peer);
+    again.resume = Resume{session, "", 0};
+    Client client(lab, peer);
+    return client.ask(again)["answer"]["resumed"].get<bool>();
+  }
+
+ private:
+  HelloRequest hello(const std::string& name, const Peer& peer) {
+    HelloRequest hello;
+    hello.version = kProtocol;
+    hello.name = name;
+    if (!peer.local) hello.ticket = lab.gate->issue({name, Role::kEdit}, lab.bus->now());
+    return hello;
+  }
+};
+
+TEST_F(Parked, OneAddressDrivesOutNoSessionButItsOwn) {
+  const Peer other{"10.0.0.8", false}, many{"10.0.0.7", false};
+  const std::string others = park("bert", other);
+  std::vector<std::string> of_many;
+  for (int i = 0; i < Hub::kMaxParkedOfOne + 1; ++i) of_many.push_back(park("carl", many));
+  lab.run(1);
+  EXPECT_FALSE(is_kept("carl", many, of_many[0])) << "their oldest is one too many";
+  EXPECT_TRUE(is_kept("carl", many, of_many[1]));
+  EXPECT_TRUE(is_kept("bert", other, others)) << "older, and not theirs";
+}
+
+TEST_F(Parked, WhoNeedsNoTokenIsKeptWhenTokensGo) {
+  const Peer local{"127.0.0.1", true}, other{"10.0.0.8", false};
+  ASSERT_TRUE(has_code(ana.hello(), "OK"));
+  const std::string here = park("bert", local), elsewhere = park("carl", other);
+  lab.bridge->hub().keep_only([](const Identity&) { return false; });
+  EXPECT_FALSE(lab.bridge->hub().closing(ana.connection));
+  EXPECT_CODE(ana.ask(AgentsRequest{}), "OK");
+  EXPECT_TRUE(is_kept("bert", local, here));
+  EXPECT_FALSE(is_kept("carl", other, elsewhere));
+}
+
 }  // namespace
 }  // namespace concord::hmd

@@ -3,6 +3,7 @@
 
 #include <set>
 
+#include "mapper/map_budget.hpp"
 #include "mapper/room_mapper.hpp"
 #include "mapper/triangle_cells.hpp"
 
@@ -29,6 +30,10 @@ RC_GTEST_PROP(TriangleCells, AreThoseThatMeetTheTriangleAndNoOthers, ()) {
   std::size_t budget = 100'000;
   RC_ASSERT(TriangleCells::append(corners, budget, cells));
   std::set<VoxelIndex> found(cells.begin(), cells.end());
+  if ((corners[1] - corners[0]).cross(corners[2] - corners[0]).norm() < 1e-9) {
+    RC_ASSERT(found.empty());  // a line
+    return;
+  }
   TriangleCells::Corners nudged = corners;
   for (auto& c : nudged) c.array() += 1e-6;
   for (int x = -5; x <= 5; ++x) {
@@ -83,6 +88,35 @@ TEST(RoomMapper, WhatALookCostsIsBoundedHoweverOftenATriangleIsRepeated) {
   EXPECT_FALSE(TriangleCells::append({Eigen::Vector3d(0, 0, 0.5), {90, 0, 0.5}, {0, 90, 0.5}}, budget, cells));
   EXPECT_LE(cells.size(), 1000U);
   EXPECT_EQ(budget, 0U) << "the next triangle has none left";
+}
+
+TEST(RoomMapper, TrianglesThatAreLinesMeetNothingAndCostNothing) {
+  MeshPart lines = quad(1, 1.0F, 0.01F);
+  lines.vertices.insert(lines.vertices.end(), {{-4, -4, -1}, {0, 0, 1}, {4, 4, 3}});
+  RoomMapper with(0.05), without(0.05);
+  ASSERT_TRUE(without.take(look_at({lines}), 0));
+  for (int i = 0; i < 400; ++i) lines.triangles.insert(lines.triangles.end(), {{4, 5, 6}, {4, 6, 6}, {5, 5, 5}});
+  ASSERT_TRUE(with.take(look_at({lines}), 0));
+  EXPECT_TRUE(with.map() == without.map());
+  EXPECT_EQ(with.bytes(), without.bytes());
+  EXPECT_GT(with.bytes(), RoomMapper(0.05).bytes());
+}
+
+TEST(MapBudget, WhatNobodySpeaksForGoesFirstAndNothingElseGoes) {
+  const MapLimits limits{4, 2, 100, 50};
+  using Names = std::vector<std::string>;
+  std::vector<HeldMap> held{
+      {"a", "ana", 20, 4, true}, {"b", "bert", 40, 2, false}, {"c", "carl", 30, 1, false}, {"d", "dora", 0, 3, true}};
+  EXPECT_EQ(room_for_look(held, "ana", limits), Names{});
+  EXPECT_EQ(room_for_agent(held, "ana", limits), Names{"c"}) << "the one used longest ago";
+  held[0].bytes = 70;
+  EXPECT_EQ(room_for_look(held, "dora", limits), (Names{"c", "b"})) << "until it fits";
+  EXPECT_EQ(room_for_look(held, "ana", limits), std::nullopt) << "others' maps are no room for who has used up a share";
+  held[1].spoken_for = held[2].spoken_for = true;
+  EXPECT_EQ(room_for_look(held, "dora", limits), std::nullopt);
+  EXPECT_EQ(room_for_agent(held, "dora", limits), std::nullopt);
+  held[3] = {"d", "bert", 0, 3, false};
+  EXPECT_EQ(room_for_agent(held, "bert", limits), Names{"d"}) << "of their own two";
 }
 
 TEST(RoomMapper, ProbabilityEndsAtAHundredPercent) {
