@@ -20,7 +20,7 @@ namespace asio = boost::asio;
 constexpr std::chrono::milliseconds kWait(5);  ///< the bus's timers are due to so much
 constexpr std::chrono::milliseconds kFarewell(300);
 constexpr std::int64_t kTokens = 5'000'000;  ///< microseconds: so soon who has lost their token is out
-constexpr int kTurns = 64;                   ///< of clients, between two of the bus
+constexpr int kTurns = 8;                    ///< of clients, between two of the bus
 
 /// Where models are is told to who may know it, and changes with each start.
 std::string models_address() { return "/models/" + random_secret() + "/"; }

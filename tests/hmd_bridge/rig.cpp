@@ -69,7 +69,7 @@ class Rig::Parts {
     ready.set_value();
     while (!stop) {
       io.run_one_for(std::chrono::milliseconds(1));
-      for (int turn = 0; turn < 64 && io.poll_one() > 0; ++turn) {
+      for (int turn = 0; turn < 8 && io.poll_one() > 0; ++turn) {
       }
       bus.spin_once(0);
       server.pump();
