@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/decimal.hpp"
 #include "core/ray.hpp"
 #include "mapper/triangle_cells.hpp"
 
@@ -180,7 +181,7 @@ void RoomMapper::render(BrickIndex index) {
 Result<void> RoomMapper::take(const VoxelLook& look, std::int64_t sequence) {
   if (const auto fresh = check_sequence(sequence, next_sequence_); !fresh) return fresh;
   if (std::abs(look.resolution - resolution_) > 1e-9) {
-    return refuse(Code::kBadResolution, "voxels must be " + std::to_string(resolution_) + " m wide, as the map's");
+    return refuse(Code::kBadResolution, "voxels must be " + decimal(resolution_) + " m wide, as the map's");
   }
   const auto any = [](const ChunkBits& bits) {
     return std::any_of(bits.begin(), bits.end(), [](std::uint8_t b) { return b != 0; });

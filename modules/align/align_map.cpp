@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "align/workers.hpp"
+#include "core/decimal.hpp"
 
 namespace concord {
 namespace {
@@ -55,7 +56,7 @@ bool usable(double resolution) {
 }
 
 tl::unexpected<Error> refuse_resolution(double resolution) {
-  return refuse(Code::kBadResolution, "maps are aligned at 0.02 to 1 m, this one has " + std::to_string(resolution));
+  return refuse(Code::kBadResolution, "maps are aligned at 0.02 to 1 m, this one has " + decimal(resolution));
 }
 
 }  // namespace

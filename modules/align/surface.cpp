@@ -8,6 +8,7 @@
 
 #include "align/cell_table.hpp"
 #include "align/workers.hpp"
+#include "core/decimal.hpp"
 
 namespace concord {
 namespace {
@@ -99,8 +100,8 @@ SurfacePoints without_loners(SurfacePoints points, double resolution, int thread
 
 Result<SurfacePoints> surface_points(const BrickMap& map, double resolution) {
   if (!std::isfinite(resolution) || resolution < kMinAlignResolution) {
-    return refuse(Code::kBadResolution, "maps are aligned at " + std::to_string(kMinAlignResolution) +
-                                            " m or coarser, this one has " + std::to_string(resolution));
+    return refuse(Code::kBadResolution, "maps are aligned at " + decimal(kMinAlignResolution) +
+                                            " m or coarser, this one has " + decimal(resolution));
   }
   SurfacePoints points;
   StopLook stop;

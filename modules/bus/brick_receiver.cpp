@@ -6,6 +6,7 @@
 
 #include "bus/brick_stream.hpp"
 #include "core/brick_codec.hpp"
+#include "core/decimal.hpp"
 
 namespace concord {
 namespace {
@@ -82,9 +83,8 @@ bool BrickReceiver::enter(const Origin& origin) {
   const auto& [boot_id, incarnation, frame_id, resolution] = origin;
   const std::int64_t time = bus_.now();
   if (!(std::abs(resolution - config_.resolution) <= 1e-9)) {
-    counters_.refused(config_.stream,
-                      {Code::kBadResolution, "stream has " + std::to_string(resolution) + " m, the site " +
-                                                 std::to_string(config_.resolution) + " m"});
+    counters_.refused(config_.stream, {Code::kBadResolution, "stream has " + decimal(resolution) + " m, the site " +
+                                                                 decimal(config_.resolution) + " m"});
     return false;
   }
   if (boot_id == boot_id_) {

@@ -7,6 +7,7 @@
 #include <xxhash.h>
 
 #include "core/correction_check.hpp"
+#include "core/decimal.hpp"
 #include "core/map_archive_parts.hpp"
 #include "core/octomap_format.hpp"
 
@@ -94,9 +95,8 @@ class Reader {
     const auto resolution = checked_resolution(in.real());
     if (!in.ok() || !in.rest().empty() || !resolution) return malformed("its resolution is none; save it again");
     if (options_.resolution && *resolution != *options_.resolution) {
-      return refuse(Code::kBadResolution, "the map has voxels of " + std::to_string(*resolution) + " m, the site of " +
-                                              std::to_string(*options_.resolution) +
-                                              " m; save it as .ot and load that");
+      return refuse(Code::kBadResolution, "the map has voxels of " + decimal(*resolution) + " m, the site of " +
+                                              decimal(*options_.resolution) + " m; save it as .ot and load that");
     }
     out_.resolution = *resolution;
     return {};

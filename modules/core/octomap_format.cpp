@@ -1,12 +1,13 @@
 #include "core/octomap_format.hpp"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <optional>
 #include <string>
 #include <string_view>
+
+#include "core/decimal.hpp"
 
 namespace concord {
 namespace {
@@ -83,7 +84,7 @@ Result<double> checked_resolution(double resolution) {
   if (!std::isfinite(resolution)) return refuse(Code::kNotFinite, "resolution is not a finite number");
   if (resolution < kMinResolution || resolution > kMaxResolution) {
     return refuse(Code::kBadResolution,
-                  "resolution " + std::to_string(resolution) + " m is not in [0.0001, 100]; is it in metres?");
+                  "resolution " + decimal(resolution) + " m is not in [0.0001, 100]; is it in metres?");
   }
   return resolution;
 }
@@ -114,12 +115,8 @@ Result<OctomapHeader> read_octomap_header(ByteSpan& in) {
 }
 
 void append_octomap_header(Bytes& out, const OctomapHeader& header) {
-  std::array<char, 32> resolution;
-  const auto end = std::to_chars(resolution.data(), resolution.data() + resolution.size(), header.resolution).ptr;
   std::string text(header.format == OctomapFormat::kBinary ? kBinaryTitle : kFullTitle);
-  text += "\nid OcTree\nsize " + std::to_string(header.nodes) + "\nres ";
-  text.append(resolution.data(), end);
-  text += "\ndata\n";
+  text += "\nid OcTree\nsize " + std::to_string(header.nodes) + "\nres " + decimal(header.resolution) + "\ndata\n";
   out.insert(out.end(), text.begin(), text.end());
 }
 

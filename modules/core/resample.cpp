@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "core/decimal.hpp"
+
 namespace concord {
 namespace {
 
@@ -178,13 +180,13 @@ Result<BrickMap> resample(const BrickMap& map, double source, double target, std
                           const std::stop_token& stop) {
   assert(source > 0 && target > 0);
   const auto too_large = [&] {
-    return refuse(Code::kTooLarge, "map at " + std::to_string(target) + " m has more than " +
-                                       std::to_string(max_bricks) + " bricks; use a coarser resolution");
+    return refuse(Code::kTooLarge, "map at " + decimal(target) + " m has more than " + std::to_string(max_bricks) +
+                                       " bricks; use a coarser resolution");
   };
   const Resampler resampler(map, source, target);
   if (!resampler.stays_in_bounds()) {
     return refuse(Code::kOutOfBounds,
-                  "map at " + std::to_string(target) + " m has voxel indices beyond 2^20; use a coarser resolution");
+                  "map at " + decimal(target) + " m has voxel indices beyond 2^20; use a coarser resolution");
   }
   // No target is in more than 8 pairs unless it is coarser, and then there are at most 8 pairs a source brick.
   if (resampler.pairs() > 8.0 * static_cast<double>(std::max<std::uint64_t>(max_bricks, map.brick_count()))) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/convex_cells.hpp"
+#include "core/decimal.hpp"
 #include "core/shape_pieces.hpp"
 #include "core/voxel_runs.hpp"
 
@@ -138,8 +139,8 @@ struct Select {
 
   Result<std::vector<VoxelIndex>> operator()(const VoxelList& list) const {
     if (!(std::abs(list.resolution - resolution) < kSameResolution)) {
-      return refuse(Code::kBadResolution, "the voxels are of " + std::to_string(list.resolution) + " m, the map's of " +
-                                              std::to_string(resolution) + " m");
+      return refuse(Code::kBadResolution,
+                    "the voxels are of " + decimal(list.resolution) + " m, the map's of " + decimal(resolution) + " m");
     }
     return expand(list.boxes, most);
   }

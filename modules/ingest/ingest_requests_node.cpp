@@ -5,6 +5,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "core/decimal.hpp"
 #include "core/downsample.hpp"
 #include "core/map_archive.hpp"
 #include "core/octomap_reader.hpp"
@@ -182,8 +183,8 @@ Result<std::int64_t> IngestNode::downsample(const DownsampleRequest& request) {
   const Agent* agent = ingest_.find(request.agent);
   if (agent == nullptr) return unknown_agent(request.agent);
   if (!(request.resolution >= site_.resolution && request.resolution <= kMaxCell)) {
-    return refuse(Code::kBadResolution, "resolution must lie between the site's " + std::to_string(site_.resolution) +
-                                            " m and " + std::to_string(kMaxCell) + " m");
+    return refuse(Code::kBadResolution, "resolution must lie between the site's " + decimal(site_.resolution) +
+                                            " m and " + decimal(kMaxCell) + " m");
   }
   const std::vector<Eigen::Vector3f> points = concord::downsample(agent->layer, site_.resolution, request.resolution);
   const std::size_t parts = std::max<std::size_t>(1, (points.size() + kPointsInPart - 1) / kPointsInPart);

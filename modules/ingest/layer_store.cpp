@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/brick_codec.hpp"
+#include "core/decimal.hpp"
 #include "core/requests.hpp"
 
 namespace concord {
@@ -92,8 +93,8 @@ void LayerStore::check_resolution(double resolution) {
   if (done && !written) done = database_.prepare("INSERT INTO lattice VALUES (?)").run(resolution);
   if (!done) throw std::runtime_error(done.error().message);
   if (!written || *written == resolution) return;
-  throw std::runtime_error("the layers on disk have a resolution of " + std::to_string(*written) + " m, the site " +
-                           std::to_string(resolution) + " m; set it back, or move ingest.db away and send all again");
+  throw std::runtime_error("the layers on disk have a resolution of " + decimal(*written) + " m, the site " +
+                           decimal(resolution) + " m; set it back, or move ingest.db away and send all again");
 }
 
 /// What stands, and what a kill left of layers that were half written or half dropped.

@@ -5,16 +5,16 @@
 #include <optional>
 #include <vector>
 
+#include "core/decimal.hpp"
+
 namespace concord {
 namespace {
 
 constexpr std::size_t kMostNumbers = 2 + 2 * 1024;
 
 void append(std::string& out, double value) {
-  char digits[32];  // the shortest that reads back the same takes at most 24
-  const auto end = std::to_chars(std::begin(digits), std::end(digits), value).ptr;
   if (!out.empty()) out += ' ';
-  out.append(std::begin(digits), end);
+  out += decimal(value);
 }
 
 template <class Derived>

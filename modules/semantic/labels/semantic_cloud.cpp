@@ -8,6 +8,7 @@
 #include <optional>
 #include <string_view>
 
+#include "core/decimal.hpp"
 #include "core/octomap_format.hpp"
 #include "core/text.hpp"
 
@@ -18,14 +19,9 @@ constexpr const char* kResolutionWord = "concord resolution ";
 constexpr const char* kClassWord = "concord class ";
 constexpr std::size_t kMostHeader = 1'000'000;
 
-std::string number(double value) {
-  char text[40];
-  return {text, std::to_chars(text, text + sizeof(text), value).ptr};
-}
-
 /// The lines that say what the numbers mean, each behind the format's word for a comment.
 std::string comments(const SemanticCloud& cloud, const std::string& word) {
-  std::string out = word + kResolutionWord + number(cloud.resolution) + "\n";
+  std::string out = word + kResolutionWord + decimal(cloud.resolution) + "\n";
   for (const auto& [id, name] : cloud.classes) out += word + kClassWord + std::to_string(id) + " " + name + "\n";
   return out;
 }
