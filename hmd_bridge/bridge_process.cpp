@@ -76,10 +76,7 @@ class BridgeProcess::Parts {
   std::unique_ptr<asio::posix::stream_descriptor> bus_ready;
 
   /// Tokens that cannot be read just now are as they were.
-  bool holds(const Identity& who) {
-    const auto now = tokens.named(who.name);
-    return !now || (*now && (*now)->role == who.role);
-  }
+  bool holds(const Identity& who) { return tokens.holds(who).value_or(true); }
 
   void watch(LcmBus& bus) {
     bus_ready->async_wait(asio::posix::stream_descriptor::wait_read,

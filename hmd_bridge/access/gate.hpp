@@ -17,6 +17,8 @@ namespace concord::hmd {
 struct Identity {
   std::string name;
   Role role = Role::kView;
+  std::string token = {};  ///< its SHA-256 in hex; empty: none was needed
+  bool operator==(const Identity&) const = default;
 };
 
 /// Whether a client of this role may do what needs that one.

@@ -115,25 +115,26 @@ Result<std::vector<TokenStore::Entry>> TokenStore::list() {
 
 Result<std::optional<Identity>> TokenStore::find(const std::string& token) {
   if (token.size() > kMaxToken) return std::optional<Identity>();
-  return look_up("SELECT name, role FROM tokens WHERE hash = ?", sha256(token));
+  return look_up(sha256(token));
 }
 
-Result<std::optional<Identity>> TokenStore::named(const std::string& name) {
-  return look_up("SELECT name, role FROM tokens WHERE name = ?", name);
+Result<bool> TokenStore::holds(const Identity& who) {
+  return look_up(who.token).map([&](const std::optional<Identity>& now) { return now == who; });
 }
 
 // Anybody may ask whether a token is one: this writes nothing and waits for nobody.
-Result<std::optional<Identity>> TokenStore::look_up(const char* query, const std::string& key) {
+Result<std::optional<Identity>> TokenStore::look_up(const std::string& hash) {
   std::error_code ignored;
   if (!std::filesystem::exists(file_, ignored)) return std::optional<Identity>();
   sqlite3* opened = nullptr;
   int status = sqlite3_open_v2(file_.c_str(), &opened, SQLITE_OPEN_READWRITE, nullptr);
   const std::unique_ptr<sqlite3, Close> handle(opened);
   sqlite3_stmt* prepared = nullptr;
-  if (status == SQLITE_OK) status = sqlite3_prepare_v2(handle.get(), query, -1, &prepared, nullptr);
+  constexpr const char* kQuery = "SELECT name, role FROM tokens WHERE hash = ?";
+  if (status == SQLITE_OK) status = sqlite3_prepare_v2(handle.get(), kQuery, -1, &prepared, nullptr);
   const std::unique_ptr<sqlite3_stmt, Finalize> find(prepared);
   if (status == SQLITE_OK)
-    status = sqlite3_bind_text(find.get(), 1, key.data(), static_cast<int>(key.size()), SQLITE_TRANSIENT);
+    status = sqlite3_bind_text(find.get(), 1, hash.data(), static_cast<int>(hash.size()), SQLITE_TRANSIENT);
   if (status == SQLITE_OK) status = sqlite3_step(find.get());
   if (status == SQLITE_DONE) return std::optional<Identity>();
   if (status != SQLITE_ROW) {
@@ -143,7 +144,7 @@ Result<std::optional<Identity>> TokenStore::look_up(const char* query, const std
   const std::int64_t role = sqlite3_column_int64(find.get(), 1);
   if (role < 0 || role > 2) return concord::refuse(concord::Code::kMalformed, "a token in the store has no role");
   const auto* name = reinterpret_cast<const char*>(sqlite3_column_text(find.get(), 0));
-  return std::optional(Identity{name != nullptr ? name : "", static_cast<Role>(role)});
+  return std::optional(Identity{name != nullptr ? name : "", static_cast<Role>(role), hash});
 }
 
 }  // namespace concord::hmd

@@ -36,11 +36,11 @@ class TokenStore {
   [[nodiscard]] Result<std::vector<Entry>> list();
   /// Whose token it is; nobody's if it is none. Refused at once (kBusy) while somebody writes them.
   [[nodiscard]] Result<std::optional<Identity>> find(const std::string& token);
-  /// The same of the token of this name.
-  [[nodiscard]] Result<std::optional<Identity>> named(const std::string& name);
+  /// Whether that is still so: the very token, not another of its name. Refused as `find`.
+  [[nodiscard]] Result<bool> holds(const Identity& who);
 
  private:
-  [[nodiscard]] Result<std::optional<Identity>> look_up(const char* query, const std::string& key);
+  [[nodiscard]] Result<std::optional<Identity>> look_up(const std::string& hash);
 
   std::filesystem::path file_;
 };

@@ -284,8 +284,7 @@ void Hub::keep_only(const std::function<bool(const Identity&)>& holds) {
     Session& session = it->second;
     const bool good = !session.by_token || holds(session.identity);
     if (!good && session.connection) {
-      close(*session.connection, links_.at(*session.connection), 1008, Code::kBadToken,
-            "this token was taken away, or has another role now");
+      close(*session.connection, links_.at(*session.connection), 1008, Code::kBadToken, "this token was taken away");
       session.secret = gate_.new_secret();  // nobody takes it up again
     }
     it = good || session.connection ? std::next(it) : sessions_.erase(it);

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "core/map_archive_fields.hpp"
+#include "core/text.hpp"
 #include "semantic/models/gltf.hpp"
 #include "semantic/models/model_file.hpp"
 #include "store/whole_file.hpp"
@@ -39,6 +40,37 @@ FileState read_state(archive::FieldReader& in) {
   state.written = in.integer<std::int64_t>();
   state.bytes = in.integer<std::int64_t>();
   return state;
+}
+
+/// Writes the model as glTF. Returns the size of the box around it, metres.
+Result<Eigen::Vector3d> convert(const fs::path& from, const fs::path& to, double unit,
+                                std::vector<FileState>& siblings) {
+  const auto mesh = read_model_file_here(from, &siblings);
+  if (!mesh) return tl::unexpected(mesh.error());
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& p : mesh->vertices) box.extend(p);
+  std::error_code error;
+  fs::create_directories(to.parent_path(), error);
+  const auto written = write_whole_file(to, write_glb(*mesh, unit));
+  return written.map([&] { return Eigen::Vector3d(box.sizes() * unit); });
+}
+
+/// A reply: why it is no model, or nothing; its size; what it names.
+void append_outcome(Bytes& out, const Result<Eigen::Vector3d>& size) {
+  append_le(out, size ? std::uint8_t{0} : static_cast<std::uint8_t>(size.error().code));
+  archive::append_text(out, size ? std::string() : cut_to(size.error().message, 255));
+  archive::append_vector<3>(out, size.value_or(Eigen::Vector3d::Zero()));
+}
+
+Result<Eigen::Vector3d> read_outcome(archive::FieldReader& in) {
+  const auto code = in.integer<std::uint8_t>();
+  const std::string why = in.text();
+  const Eigen::Vector3d size = archive::read_vector<3>(in);
+  if (!in.ok() || !size.allFinite() || code > static_cast<std::uint8_t>(Code::kIo)) {
+    return refuse(Code::kMalformed, "the model cannot be read");
+  }
+  if (!why.empty()) return refuse(static_cast<Code>(code), why);
+  return size;
 }
 
 }  // namespace
@@ -124,17 +156,10 @@ const Asset* GltfStore::next(const std::map<std::string, Asset>& assets, std::in
 ChildWork::Work GltfStore::work_for(const Asset& asset) const {
   return [source = folder_ / asset.file, to = file_of(asset.name), unit = asset.unit]() -> Result<Bytes> {
     std::vector<FileState> siblings;
-    const auto mesh = read_model_file_here(source, &siblings);
-    if (!mesh) return tl::unexpected(mesh.error());
-    Eigen::AlignedBox3d box;
-    for (const Eigen::Vector3d& p : mesh->vertices) box.extend(p);
-    std::error_code error;
-    fs::create_directories(to.parent_path(), error);
-    if (const auto written = write_whole_file(to, write_glb(*mesh, unit)); !written) {
-      return tl::unexpected(written.error());
-    }
+    const auto size = convert(source, to, unit, siblings);
+    if (!size && size.error().code == Code::kIo) return tl::unexpected(size.error());
     Bytes reply;
-    archive::append_vector<3>(reply, box.sizes() * unit);
+    append_outcome(reply, size);
     for (const FileState& sibling : siblings) append(reply, sibling);
     return reply;
   };
@@ -147,22 +172,18 @@ Result<void> GltfStore::note(const std::string& name, const Source& source, cons
     failed_[name] = now;
     return tl::unexpected(reply.error());
   }
+  archive::FieldReader in(reply ? ByteSpan(*reply) : ByteSpan());
+  const Result<Eigen::Vector3d> size = reply ? read_outcome(in) : tl::unexpected(reply.error());
   Made& made = made_[name];
   made = Made();
   made.source = source;
-  if (reply) {
-    archive::FieldReader in(*reply);
-    made.size = archive::read_vector<3>(in);
-    while (in.ok() && !in.rest().empty()) made.siblings.push_back(read_state(in));
-    if (in.ok() && made.size.allFinite()) return write_notes();
-  }
-  made.siblings.clear();
-  made.size.setZero();
-  made.is_readable = false;
+  while (in.ok() && !in.rest().empty()) made.siblings.push_back(read_state(in));
+  made.is_readable = size.has_value();
+  made.size = size.value_or(Eigen::Vector3d::Zero());
+  if (size) return write_notes();
   std::error_code none;
   std::filesystem::remove(file_of(name), none);  // of what the model was
-  return reply ? refuse(Code::kMalformed, name + ": the model cannot be read")
-               : Result<void>(tl::unexpected(reply.error()));
+  return tl::unexpected(size.error());
 }
 
 Result<void> GltfStore::keep_only(const std::map<std::string, Asset>& assets) {

@@ -36,8 +36,8 @@ class GltfStore {
   };
   [[nodiscard]] Source source_of(const Asset& asset) const;
 
-  /// The first that has none, or none of its model as it is. Not one that is no model, until it changes; nor for
-  /// kPause one whose file or disk failed. @param now microseconds
+  /// The first that has none, or none of its model as it is. Not one that is no model, until it or what it names
+  /// changes; nor for kPause one whose file or disk failed. @param now microseconds
   [[nodiscard]] const Asset* next(const std::map<std::string, Asset>& assets, std::int64_t now) const;
   /// Writes the file, in a process of its own. Refused: read_model_file, kIo.
   [[nodiscard]] ChildWork::Work work_for(const Asset& asset) const;
@@ -50,7 +50,7 @@ class GltfStore {
  private:
   struct Made {
     Source source;
-    std::vector<FileState> siblings;  ///< that were read with it
+    std::vector<FileState> siblings;  ///< that it names, be they there or not
     Eigen::Vector3d size = Eigen::Vector3d::Zero();
     bool is_readable = true;
   };

@@ -138,6 +138,7 @@ const Thing* Sightings::find(std::int64_t number) const {
 
 void Sightings::add(const std::string& asset, const std::string& class_name, const std::string& injection,
                     const Transform& T_map_asset) {
+  forget_dropped_at(asset, T_map_asset);
   const auto added = add_thing(asset, T_map_asset);
   if (!added) return;  // then it is not followed, and stays where it is
   (*added)->thing.class_name = class_name;
@@ -147,6 +148,7 @@ void Sightings::add(const std::string& asset, const std::string& class_name, con
 /// Where it was seen before it was put is where it is seen there, if the fit took it no farther than a fit may.
 void Sightings::put(std::int64_t number, const std::string& injection, const Transform& T_map_asset) {
   Kept& kept = things_.at(number);
+  forget_dropped_at(kept.thing.asset, T_map_asset);
   std::optional<Transform> seen;
   if (kept.thing.injection.empty()) {
     seen = kept.thing.T_map_asset;
@@ -179,11 +181,23 @@ void Sightings::drop(std::int64_t number) {
 }
 
 void Sightings::forget_dropped(std::int64_t now) {
-  std::vector<std::int64_t> old;
+  forget_those([&](const Kept& kept) { return kept.is_dropped && now - kept.heard >= kDroppedFor; });
+}
+
+/// Else it would go on swallowing what is seen of the one that is there now.
+void Sightings::forget_dropped_at(const std::string& asset, const Transform& T_map_asset) {
+  forget_those([&](const Kept& kept) {
+    return kept.is_dropped && kept.thing.asset == asset && distance(kept.thing.T_map_asset, T_map_asset) <= kSameThing;
+  });
+}
+
+template <class Which>
+void Sightings::forget_those(Which which) {
+  std::vector<std::int64_t> numbers;
   for (const auto& [number, kept] : things_) {
-    if (kept.is_dropped && now - kept.heard >= kDroppedFor) old.push_back(number);
+    if (which(kept)) numbers.push_back(number);
   }
-  for (const std::int64_t number : old) forget(number);
+  for (const std::int64_t number : numbers) forget(number);
 }
 
 std::vector<Thing> Sightings::list() const {

@@ -26,7 +26,8 @@ inline constexpr double kTurned = 0.5;  ///< radians
 /// lies where it was put is as good as there. A move is kept for good, so each is called for later after the one before
 /// than that was, be it that nothing came of it or that the thing is always on its way.
 ///
-/// What a person dropped is known for none, and not told of, until nobody has seen it for kDroppedFor.
+/// What a person dropped is known for none, and not told of, until nobody has seen it for kDroppedFor, or somebody puts
+/// one there.
 class Sightings {
  public:
   static constexpr double kSameThing = 0.5;  ///< metres
@@ -88,6 +89,9 @@ class Sightings {
   static void see_elsewhere(Kept& kept, const Transform& T_map_asset, std::int64_t now, Seen& seen);
   [[nodiscard]] Kept* thing_of(const Detection& detection, const std::string& asset, const Transform& T_map_asset);
   [[nodiscard]] bool make_room();
+  template <class Which>
+  void forget_those(Which which);
+  void forget_dropped_at(const std::string& asset, const Transform& T_map_asset);
 
   std::map<std::int64_t, Kept> things_;
   std::map<std::pair<std::string, std::string>, std::int64_t> followed_;  ///< by who and their name for it

@@ -11,6 +11,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostSiblings = 256;  ///< that are watched: a hostile file may name any number
+constexpr std::size_t kMostName = 255;      ///< bytes, of those
 
 Result<Bytes> read_file(const fs::path& file) {
   std::error_code error;
@@ -25,18 +26,26 @@ Result<Bytes> read_file(const fs::path& file) {
   return bytes;
 }
 
+bool leads_out(const fs::path& name) {
+  return name.is_absolute() || std::ranges::find(name, fs::path("..")) != name.end();
+}
+
 /// Refuses what leads out of the folder, by its name or by a link.
 Result<Bytes> read_sibling(const fs::path& folder, const std::string& name) {
-  const fs::path relative(name);
-  const bool leads_out = relative.is_absolute() || std::ranges::find(relative, fs::path("..")) != relative.end();
   std::error_code error;
   const fs::path top = fs::canonical(folder, error);
-  const fs::path real = error || leads_out ? fs::path() : fs::canonical(folder / relative, error);
+  const fs::path real = error || leads_out(name) ? fs::path() : fs::canonical(folder / name, error);
   const auto [end_of_top, ignored] = std::mismatch(top.begin(), top.end(), real.begin(), real.end());
-  if (leads_out || error || end_of_top != top.end()) {
+  if (real.empty() || error || end_of_top != top.end()) {
     return refuse(Code::kNotFound, name + " is not in the model's folder");
   }
   return read_file(real);
+}
+
+void watch(const fs::path& folder, const std::string& name, std::vector<FileState>& siblings) {
+  if (siblings.size() >= kMostSiblings || name.size() > kMostName || leads_out(name)) return;
+  const bool is_new = std::ranges::find(siblings, name, &FileState::name) == siblings.end();
+  if (is_new) siblings.push_back(state_of(folder, name));
 }
 
 }  // namespace
@@ -60,11 +69,8 @@ Result<TriangleMesh> read_model_file_here(const fs::path& file, std::vector<File
   if (!bytes) return tl::unexpected(bytes.error());
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   auto mesh = read_model(*bytes, kind, [&](const std::string& name) {
-    const FileState before = state_of(folder, name);
-    auto sibling = read_sibling(folder, name);
-    const bool is_new = siblings != nullptr && std::ranges::find(*siblings, name, &FileState::name) == siblings->end();
-    if (sibling && is_new && siblings->size() < kMostSiblings) siblings->push_back(before);
-    return sibling;
+    if (siblings != nullptr) watch(folder, name, *siblings);
+    return read_sibling(folder, name);
   });
   if (!mesh) return refuse(mesh.error().code, file.string() + ": " + mesh.error().message);
   return mesh;

@@ -25,7 +25,7 @@ struct FileState {
 [[nodiscard]] FileState state_of(const std::filesystem::path& folder, const std::string& name);
 
 /// The same in this very process, which a hostile file may crash: for work that is in one of its own already.
-/// @param siblings null, or where to add what was read besides, as it was before it was read.
+/// @param siblings null, or where to add what it names besides, as it was before it was read; also if it is refused.
 [[nodiscard]] Result<TriangleMesh> read_model_file_here(const std::filesystem::path& file,
                                                         std::vector<FileState>* siblings = nullptr);
 

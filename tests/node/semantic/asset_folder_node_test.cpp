@@ -48,27 +48,46 @@ TEST_F(AssetFolderNodeTest, AGltfIsMadeOnceAndOfWhatTheModelIs) {
   EXPECT_FALSE(std::filesystem::exists(file));
 }
 
-TEST_F(AssetFolderNodeTest, AGltfIsMadeAgainWhenWhatItsModelNamesChanges) {
-  const auto folder = site_.state / "assets";
-  const auto triangle_of = [&](float side) {
-    std::ofstream out(folder / "shape.bin", std::ios::binary);
-    for (const float c : {0.F, 0.F, 0.F, side, 0.F, 0.F, 0.F, 1.F, 0.F}) {
-      out.write(reinterpret_cast<const char*>(&c), sizeof c);
-    }
-  };
-  triangle_of(2);
-  std::ofstream(folder / "shape.gltf")
-      << R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+void write_triangle(const std::filesystem::path& file, float side) {
+  std::ofstream out(file, std::ios::binary);
+  for (const float c : {0.F, 0.F, 0.F, side, 0.F, 0.F, 0.F, 1.F, 0.F}) {
+    out.write(reinterpret_cast<const char*>(&c), sizeof c);
+  }
+}
+
+/// Its vertices are those of shape.bin.
+constexpr const char* kShape =
+    R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
 "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"buffers":[{"uri":"shape.bin","byteLength":36}],
 "bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,
 "type":"VEC3","min":[0,0,0],"max":[2,1,0]}]})";
+
+TEST_F(AssetFolderNodeTest, AGltfIsMadeOfAModelWhosePartsComeLater) {
+  const auto folder = site_.state / "assets";
+  std::ofstream(folder / "shape.gltf") << kShape;
+  std::ofstream(folder / "assets.yaml") << "shape: {file: shape.gltf}\n";
+  run(5'000'000);
+  EXPECT_FALSE(std::filesystem::exists(folder / "gltf/shape.glb"));
+  EXPECT_EQ(counters_.get("refused.assets.MALFORMED"), 1) << "and is not tried each second";
+  std::ofstream(folder / "shape.bin") << "half of it";
+  run(5'000'000);
+  EXPECT_FALSE(std::filesystem::exists(folder / "gltf/shape.glb"));
+  write_triangle(folder / "shape.bin", 2);
+  run(5'000'000);
+  EXPECT_TRUE(std::filesystem::exists(folder / "gltf/shape.glb"));
+}
+
+TEST_F(AssetFolderNodeTest, AGltfIsMadeAgainWhenWhatItsModelNamesChanges) {
+  const auto folder = site_.state / "assets";
+  write_triangle(folder / "shape.bin", 2);
+  std::ofstream(folder / "shape.gltf") << kShape;
   std::ofstream(folder / "assets.yaml") << "shape: {file: shape.gltf}\n";
   std::vector<Asset> heard;
   ListReceiver<Asset> list(*bus_, counters_, "out/assets", [&](const std::vector<Asset>& all) { heard = all; });
   run();
   ASSERT_EQ(heard.size(), 1U);
   EXPECT_NEAR(heard[0].size.x(), 2.0, 1e-6);
-  triangle_of(4);
+  write_triangle(folder / "shape.bin", 4);
   std::filesystem::last_write_time(folder / "shape.bin",
                                    std::filesystem::file_time_type::clock::now() + std::chrono::seconds(5));
   run();

@@ -121,12 +121,16 @@ TEST(TokenStore, TokensAreFoundByThemselvesOnlyAndNeverWritten) {
     const std::string bytes((std::istreambuf_iterator<char>(in)), {});
     EXPECT_EQ(bytes.find(*token), std::string::npos) << file.path();
   }
-  EXPECT_EQ((**store.named("ana")).role, Role::kRobot);
-  EXPECT_FALSE(*store.named("bert"));
+  const Identity ana = **found;
+  EXPECT_TRUE(*store.holds(ana));
   EXPECT_TRUE(store.remove("ana"));
-  EXPECT_FALSE(*store.named("ana"));
+  EXPECT_FALSE(*store.holds(ana));
   EXPECT_EQ(store.remove("ana").error().code, concord::Code::kNotFound);
   EXPECT_FALSE(*store.find(*token));
+  const auto anew = store.add("ana", Role::kRobot, kNow);
+  ASSERT_TRUE(anew);
+  EXPECT_FALSE(*store.holds(ana)) << "the one that leaked, maybe";
+  EXPECT_TRUE(*store.holds(**store.find(*anew)));
 }
 
 TEST(TokenStore, ATryWritesNothingAndWaitsForNobody) {

@@ -143,6 +143,15 @@ TEST_F(SightingsTest, WhatWasDroppedIsNotToldOfUntilNobodySawItForLong) {
   EXPECT_TRUE(again.is_new);
 }
 
+TEST_F(SightingsTest, WhatWasDroppedSwallowsNothingOfWhatIsPutThere) {
+  ASSERT_EQ(see(at(1.0), "track-7").number, 1);
+  sightings_.drop(1);
+  sightings_.add("chair", "chair", "by-hand", at(1.2));
+  EXPECT_EQ(see(at(1.2), "track-7").number, 2);
+  for (int i = 1; i < Sightings::kAgreeing; ++i) EXPECT_FALSE(see(at(4.0), "track-7").moved_to);
+  EXPECT_TRUE(see(at(4.0), "track-7").moved_to) << "it is carried off";
+}
+
 TEST_F(SightingsTest, AClockThatIsWrongKeepsNothingAlive) {
   Detection ahead;
   ahead.utime = std::int64_t{1} << 60;
