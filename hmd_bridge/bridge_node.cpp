@@ -51,6 +51,7 @@ BridgeNode::BridgeNode(const NodeContext& context, Gate& gate, const Hub::Config
   hear_alignments(desk_);
   context_.bus.every(kTick, [this] {
     hub_.tick(context_.bus.now());
+    tell_silent();
     context_.counters.set("clients", static_cast<std::int64_t>(hub_.connected()));
     std::erase_if(desk_.placed, [this](const auto& entry) { return hub_.find(entry.first.first) == nullptr; });
   });
@@ -112,13 +113,27 @@ void BridgeNode::on_path(const concord::Path& path) {
 void BridgeNode::tell_ended(const concord::Path& path) {
   for (auto& [number, session] : hub_.sessions()) {
     const auto told = session.told_paths.find(path.robot);
-    const auto followed = session.path_frames.find(path.robot);
-    if (told == session.told_paths.end() || told->second.id != path.id) continue;
-    session.told_paths.erase(told);
-    if (!session.connection || followed == session.path_frames.end()) continue;
-    if (const auto shown = desk_.show(session, Desk::no_path(path.robot), followed->second)) {
-      hub_.tell(session, "path/" + path.robot, event_text(PathEvent{path.robot, *shown}));
+    if (told != session.told_paths.end() && told->second.id == path.id) tell_no_path(session, path.robot);
+  }
+}
+
+/// A planner that is silent keeps no path up to date.
+void BridgeNode::tell_silent() {
+  for (auto& [number, session] : hub_.sessions()) {
+    std::vector<std::string> silent;
+    for (const auto& [robot, told] : session.told_paths) {
+      if (world_.active_path(robot) == nullptr) silent.push_back(robot);
     }
+    for (const std::string& robot : silent) tell_no_path(session, robot);
+  }
+}
+
+void BridgeNode::tell_no_path(Session& session, const std::string& robot) {
+  session.told_paths.erase(robot);
+  const auto followed = session.path_frames.find(robot);
+  if (!session.connection || followed == session.path_frames.end()) return;
+  if (const auto shown = desk_.show(session, Desk::no_path(robot), followed->second)) {
+    hub_.tell(session, "path/" + robot, event_text(PathEvent{robot, *shown}));
   }
 }
 

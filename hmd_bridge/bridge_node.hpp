@@ -26,6 +26,8 @@ class BridgeNode {
  private:
   [[nodiscard]] Hub::Handlers handlers();
   void tell_ended(const concord::Path& path);
+  void tell_silent();
+  void tell_no_path(Session& session, const std::string& robot);
   void on_path(const concord::Path& path);
   void hear_parts();
 

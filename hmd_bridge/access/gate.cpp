@@ -10,6 +10,7 @@ namespace concord::hmd {
 namespace {
 
 constexpr double kTriesPerSecond = 1, kTriesAtOnce = 30;
+constexpr double kDevices = 8;  ///< of a building that come in at once, in its one IPv6 network
 constexpr double kLinesPerSecond = 1, kLinesAtOnce = 100;
 constexpr double kRequestsPerSecond = 100, kRequestsAtOnce = 1000;
 constexpr double kBytesPerSecond = 16e6, kBytesAtOnce = 256e6;
@@ -39,7 +40,8 @@ bool is_loopback(const std::string& address) {
 std::string network_of(const std::string& address) {
   std::array<char, 16> bytes{};
   const bool mapped = address.starts_with("::ffff:");
-  if (mapped || inet_pton(AF_INET6, address.c_str(), bytes.data()) != 1) return address;
+  const std::string number = address.substr(0, address.find('%'));  // behind it: by which interface
+  if (mapped || inet_pton(AF_INET6, number.c_str(), bytes.data()) != 1) return address;
   return {bytes.data(), 8};
 }
 
@@ -61,7 +63,11 @@ bool origin_allowed(const std::string& origin, const std::string& scheme, const 
 }
 
 bool Gate::may_try(const std::string& address, std::int64_t now) {
-  return take(tries_, network_of(address), TokenBucket(kTriesPerSecond, kTriesAtOnce), 1, now);
+  const TokenBucket of_one(kTriesPerSecond, kTriesAtOnce);
+  const TokenBucket of_network(kDevices * kTriesPerSecond, kDevices * kTriesAtOnce);
+  const std::string network = network_of(address);
+  if (network != address && !take(tries_, network, of_network, 1, now)) return false;
+  return take(tries_, address, of_one, 1, now);
 }
 
 bool Gate::may_ask(const std::string& address, std::int64_t now) {

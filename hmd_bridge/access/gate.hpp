@@ -50,7 +50,8 @@ class Gate {
   /// `new_secret` answers a text that nobody can guess, another one each time.
   explicit Gate(std::function<std::string()> new_secret) : new_secret_(std::move(new_secret)) {}
 
-  /// Whether this network may try (a token, a connection) once more: 1 a second, 30 at once.
+  /// Whether this address may try (a token, a connection) once more: 1 a second, 30 at once; all addresses of an IPv6
+  /// network together eight times that.
   [[nodiscard]] bool may_try(const std::string& address, std::int64_t now);
   /// Whether it may send one HTTP request more: 100 a second, 1,000 at once.
   [[nodiscard]] bool may_ask(const std::string& address, std::int64_t now);

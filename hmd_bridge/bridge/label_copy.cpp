@@ -28,6 +28,7 @@ LabelCopy::LabelCopy(const NodeContext& context, Hub& hub)
 
 void LabelCopy::begin(const std::string& frame_id) {
   map_.clear();
+  slots_.clear();  // they may mean something else now; the list comes after
   hub_.restart_layer(kLabelStream, std::to_string(context_.boot_id) + "-" + std::to_string(++begun_) + "-" + frame_id);
 }
 

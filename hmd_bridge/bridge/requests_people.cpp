@@ -134,14 +134,15 @@ void work_on(Desk& desk, const Ask& ask, const LeaseFreeRequest& request) {
 
 namespace {
 
+/// A merge that is started anew answers within it.
+constexpr std::int64_t kScenePatience = 30'000'000;
+
 /// A scene on its way: its steps are done one after the other.
 struct SceneRun {
   std::vector<concord::EditRequest> edits;
   std::vector<concord::ZoneRequest> zones;
+  std::vector<std::string> known;  ///< what this scene itself has done is no change by others
   std::size_t next = 0;
-  /// What this scene itself has done is no change by others: as long as revisions follow each other, nobody else
-  /// changed anything in between, and the next step may go by the last one.
-  std::int64_t base = 0;
   SceneSendAnswer answer;
 };
 
@@ -149,24 +150,24 @@ void run_scene(Desk& desk, const Ask& ask, const std::shared_ptr<SceneRun>& run)
   if (run->next == run->edits.size() + run->zones.size()) return desk.hub.answer(ask, run->answer);
   const std::size_t step = run->next++;
   const bool is_edit = step < run->edits.size();
-  if (is_edit) run->edits[step].base_revision = run->base;
+  if (is_edit) run->edits[step].known = run->known;
   const concord::ZoneRequest* zone = is_edit ? nullptr : &run->zones[step - run->edits.size()];
   const std::string id = is_edit ? run->edits[step].id : zone->id;
   Asker::Question question{
-      is_edit ? "in/edit" : "in/zone", is_edit ? encode(run->edits[step]) : encode(*zone), id, {}, {}};
+      is_edit ? "in/edit" : "in/zone", is_edit ? encode(run->edits[step]) : encode(*zone), id, {}, {}, kScenePatience};
   desk.asker.ask(std::move(question), [&desk, ask, run, is_edit, id](const Answer& answer) {
-    if (desk.hub.find(ask.session) == nullptr) return;
     if (!answer.ok) {
       const Code code = zone_code(answer.code);
-      if (run->next == 1) return desk.hub.refuse(ask, code, answer.message);
-      run->answer.revision = run->base;
+      const bool may_be_done = code == Code::kTimeout && is_edit;
+      if (run->next == 1 && !may_be_done) return desk.hub.refuse(ask, code, answer.message);
+      if (may_be_done) run->answer.unsure = id;
       run->answer.stopped = Refusal{code, cut_to(answer.message, 400), may_retry(code)};
       return desk.hub.answer(ask, run->answer);
     }
-    if (answer.revision == run->base + 1) run->base = answer.revision;
     run->answer.revision = answer.revision;
     if (is_edit) {
       run->answer.edits.push_back(id);
+      run->known.push_back(id);
     } else {
       ++run->answer.zones;
     }
@@ -178,7 +179,10 @@ void run_scene(Desk& desk, const Ask& ask, const std::shared_ptr<SceneRun>& run)
 
 void work_on(Desk& desk, const Ask& ask, const SceneSendRequest& request) {
   const auto run = std::make_shared<SceneRun>();
-  run->answer.revision = run->base = request.base_revision;
+  run->answer.revision = request.base_revision;
+  run->known = request.known.value_or(std::vector<std::string>());
+  if (!std::ranges::all_of(run->known, is_request_id))
+    return desk.hub.refuse(ask, Code::kBadRequest, "known must hold ids of edits");
   if (request.edits.empty() && request.zones.empty()) return desk.hub.refuse(ask, Code::kEmpty, "nothing to do");
   for (const SceneEdit& part : request.edits) {
     if (part.op == EditOp::kMove)

@@ -125,8 +125,9 @@ std::shared_ptr<ReplanWait> paths_now(Desk& desk) {
   return wait;
 }
 
-void take_back(Desk& desk, const Ask& ask, const std::string& edit, Code code, const std::string& why) {
-  const concord::UndoRequest undo{edit + "-back", desk.author(ask), edit, false, desk.now()};
+/// Also where nobody listens any more.
+void take_back(Desk& desk, const Ask& ask, const concord::EditRequest& edit, Code code, const std::string& why) {
+  const concord::UndoRequest undo{edit.id + "-back", edit.author, edit.id, false, desk.now()};
   desk.asker.ask({"in/undo", encode(undo), undo.id, {}, {}}, [&desk, ask, code, why](const Answer& answer) {
     desk.hub.refuse(ask, code,
                     why + (answer.ok ? "; it was taken back" : "; and it could not be taken back: " + answer.message));
@@ -189,19 +190,18 @@ void work_on(Desk& desk, const Ask& ask, const ObstacleAddRequest& request) {
   edit.base_revision = request.base_revision.value_or(kAnyRevision);
   edit.utime = desk.now();
   auto wait = paths_now(desk);
-  desk.asker.ask({"in/edit", encode(edit), edit.id, {}, {}}, [&desk, ask, wait, id = edit.id](const Answer& answer) {
+  desk.asker.ask({"in/edit", encode(edit), edit.id, {}, {}}, [&desk, ask, wait, edit](const Answer& answer) {
     if (!answer.ok) return desk.hub.refuse(ask, code_of(answer.code), answer.message);
-    wait->done = [&desk, ask, before = wait->status, id, answer](const std::vector<PathConsequence>& paths,
-                                                                 bool in_time) {
-      if (desk.hub.find(ask.session) == nullptr) return;
+    wait->done = [&desk, ask, before = wait->status, edit, answer](const std::vector<PathConsequence>& paths,
+                                                                   bool in_time) {
       for (const PathConsequence& path : paths) {
         if (before.at(path.robot) != "OK" || path.status == "OK") continue;
-        return take_back(desk, ask, id, Code::kNoPath,
+        return take_back(desk, ask, edit, Code::kNoPath,
                          "it leaves " + path.robot + " without a path (" + path.status + ")");
       }
       if (!in_time)
-        return take_back(desk, ask, id, Code::kTimeout, "whether robots have a way around it was not said in 5 s");
-      desk.hub.answer(ask, ObstacleAddAnswer{id, answer.revision, answer.count, paths});
+        return take_back(desk, ask, edit, Code::kTimeout, "whether robots have a way around it was not said in 5 s");
+      desk.hub.answer(ask, ObstacleAddAnswer{edit.id, answer.revision, answer.count, paths});
     };
     await_replan(desk, wait, answer.revision);
   });

@@ -266,10 +266,13 @@ void Hub::tick(std::int64_t now) {
     if (!session.connection) parked.emplace_back(session.parked_at, number);
   }
   std::sort(parked.rbegin(), parked.rend());
-  std::map<std::string, int> of_address;
+  std::map<std::string, int> of_network, of_identity;
   int in_all = 0;
   for (const auto& [since, number] : parked) {  // the latest first
-    const bool one_too_many = ++of_address[sessions_.at(number).address] > kMaxParkedOfOne || ++in_all > kMaxParked;
+    const Session& session = sessions_.at(number);
+    const bool one_too_many = ++of_network[network_of(session.address)] > kMaxParkedOfOne ||
+                              (session.by_token && ++of_identity[session.identity.name] > kMaxParkedOfOne) ||
+                              ++in_all > kMaxParked;
     if (one_too_many || now - since > kParked) sessions_.erase(number);
   }
   tell_behind(now);

@@ -21,7 +21,10 @@ void RecentTexts::keep(std::int64_t id, SharedText text, std::vector<FramePointe
   order_.push_back(id);
   while (order_.size() > kMost || (bytes_ > kMostBytes && order_.size() > 1)) drop(order_.begin());
   while (frame_bytes_ > kMostFrameBytes) {
-    drop(std::find_if(order_.begin(), order_.end(), [this](std::int64_t i) { return !said_.at(i).frames.empty(); }));
+    const auto oldest =
+        std::find_if(order_.begin(), order_.end(), [this](std::int64_t i) { return !said_.at(i).frames.empty(); });
+    if (*oldest == id) return;
+    drop(oldest);
   }
 }
 

@@ -34,7 +34,8 @@ class RecentTexts {
  public:
   static constexpr std::size_t kMostBytes = 1 << 20;
   static constexpr std::size_t kMost = 256;
-  static constexpr std::size_t kMostFrameBytes = 8 << 20;  ///< of all frames; with the oldest goes its answer
+  /// Of all frames; with the oldest goes its answer, but never the latest one's.
+  static constexpr std::size_t kMostFrameBytes = 8 << 20;
 
   struct Said {
     SharedText text;

@@ -9,6 +9,7 @@
 #include <concord/zone_request_t.hpp>
 
 #include "bus/translate_shape.hpp"
+#include "core/text.hpp"
 
 namespace concord {
 namespace {
@@ -18,6 +19,11 @@ using wire::bad;
 Result<std::int64_t> base_of(std::int64_t base_revision) {
   if (base_revision >= kAnyRevision) return base_revision;
   return refuse(Code::kBadRequest, "base_revision must be a revision, or -1");
+}
+
+Result<std::vector<std::string>> known_of(const std::vector<std::string>& ids) {
+  if (std::ranges::all_of(ids, is_request_id)) return ids;
+  return refuse(Code::kBadRequest, "known must hold ids of edits");
 }
 
 std::int8_t to_wire(EditRequest::Op op) {
@@ -107,13 +113,16 @@ Bytes encode(const EditRequest& value) {
   for (int i = 0; i < 3; ++i) out.move[i] = value.move[i];
   wire::put_frame(value.frame, out);
   out.base_revision = value.base_revision;
+  out.known = value.known;
+  out.known_count = static_cast<std::int32_t>(value.known.size());
   return wire::to_bytes(out);
 }
 
 template <>
 Decoded<EditRequest> decode<EditRequest>(std::span<const std::uint8_t> bytes) {
-  static constexpr WireField kLayout[] = {record(wire::kAsker), fixed(1), wire::kShape, fixed(24),
-                                          record(wire::kFrame), fixed(8)};
+  static constexpr WireField kLayout[] = {
+      record(wire::kAsker), fixed(1), wire::kShape,          fixed(24),
+      record(wire::kFrame), fixed(8), count(kMaxKnownEdits), texts(wire::kIdLength)};
   const auto in = wire::read_asked<edit_t>(bytes, kLayout);
   if (!in) return tl::unexpected(in.error());
   auto out = wire::asked_by<EditRequest>(*in);
@@ -122,6 +131,7 @@ Decoded<EditRequest> decode<EditRequest>(std::span<const std::uint8_t> bytes) {
   if (in->op == edit_t::MOVE) out.take(&EditRequest::move, move_of(*in));
   out.take(&EditRequest::frame, wire::frame_of(*in));
   out.take(&EditRequest::base_revision, base_of(in->base_revision));
+  out.take(&EditRequest::known, known_of(in->known));
   return out.done();
 }
 

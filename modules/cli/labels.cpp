@@ -74,8 +74,13 @@ void add_labels(Program& program) {
   command.add_option("--within", options->within, "\"x y z r\": what lies within r metres of a point");
   command.add_option("--border", options->border, "the free space that things of this class border");
   command.add_flag("--classes", options->classes, "all classes that were named");
-  command.add_option("--out", options->out, "writes the map with its labels: .pcd or .ply");
-  command.add_option("--load", options->load, "labels the map as such a file says, with its numbers");
+  CLI::Option* out = command.add_option("--out", options->out, "writes the map with its labels: .pcd or .ply");
+  CLI::Option* load =
+      command.add_option("--load", options->load, "labels the map as a file says that --out wrote, with its numbers");
+  out->excludes(load);
+  for (const char* query : {"--at", "--class", "--within", "--border", "--classes"}) {
+    for (CLI::Option* file : {out, load}) file->excludes(command.get_option(query));
+  }
   command.add_option("--author", options->author, "who loads; without it $USER");
 }
 

@@ -118,9 +118,10 @@ Failure taken_back(const std::vector<std::string>& done, const std::string& auth
     undo.op = LabelRequest::Op::kUndo;
     undo.correction_id = id;
     undo.utime = live.bus().now();
-    if (live.ask("in/label", undo)) continue;
+    const auto undone = live.ask("in/label", undo);
+    if (undone || undone.error().code == name(Code::kNotFound)) continue;  // or it was never done
     why.message +=
-        "; what was labelled before is still there: concord label undo takes back " + done.front() + " to " + id;
+        "; what was labelled may still be there: concord label undo takes back " + done.front() + " to " + id;
     return why;
   }
   why.message += "; nothing was labelled";
@@ -159,7 +160,10 @@ Outcome load_labels(const std::string& file, const std::string& author, Live& li
   for (const LabelRequest& request : *requests) {
     const auto answer = live.ask("in/label", request);
     if (!answer && answer.error().code == name(Code::kEmpty)) continue;  // nothing of it is occupied here
-    if (!answer) return tl::unexpected(taken_back(ids, author, live, answer.error()));
+    if (!answer) {
+      ids.push_back(request.id);  // who did not answer may have done it
+      return tl::unexpected(taken_back(ids, author, live, answer.error()));
+    }
     voxels += answer->count;
     ids.push_back(request.id);
     labelled.insert(request.of);

@@ -77,10 +77,11 @@ Outcome hold(const Options& options, LeaseRequest request, const Common& common)
     live.wait(std::min(kRenew, static_cast<double>(end - live.bus().now()) / 1e6), [&] { return *freed_elsewhere; });
     if (goes_on()) held = ask(live, request);
   }
-  if (!held && !end_requested() && !*freed_elsewhere) return tl::unexpected(held.error());
+  const bool is_freed_elsewhere = *freed_elsewhere;  // before our own word is heard
+  if (!held && !end_requested() && !is_freed_elsewhere) return tl::unexpected(held.error());
   // Also where another client did: a renewal of ours may have come after that.
   const bool freed = free_at_the_end(live, request);
-  if (*freed_elsewhere) {
+  if (is_freed_elsewhere) {
     return fail(
         Exit::kRefused, "FREED",
         "lease " + request.lease + " was freed by another client of " + request.author + "'s: it is not held any more");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 
 #include <nlohmann/json.hpp>
@@ -19,7 +20,10 @@ std::optional<MetricBox> box_of(const BrickMasks& voxels, double r) {
   const auto box = bounds_of(voxels);
   if (!box) return std::nullopt;
   const auto& [low, high] = *box;
-  return MetricBox{{low.x * r, low.y * r, low.z * r}, {(high.x + 1) * r, (high.y + 1) * r, (high.z + 1) * r}};
+  // 21 * 0.05 is 1.0500000000000003; nobody wants more than a nanometre.
+  const auto metres = [r](int edge) { return std::round(edge * r * 1e9) / 1e9; };
+  return MetricBox{{metres(low.x), metres(low.y), metres(low.z)},
+                   {metres(high.x + 1), metres(high.y + 1), metres(high.z + 1)}};
 }
 
 }  // namespace

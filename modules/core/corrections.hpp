@@ -46,7 +46,9 @@ struct EditRequest {
   Eigen::Vector3d move = Eigen::Vector3d::Zero();  ///< metres in `frame`; rounded to whole voxels of the map
   std::int64_t base_revision = kAnyRevision;       ///< refused if these voxels were changed since
   std::int64_t utime = 0;
+  std::vector<std::string> known = {};  ///< edits that the asker knows of: while they hold they are no such change
 };
+inline constexpr std::size_t kMaxKnownEdits = 128;  ///< of one request
 
 /// Takes an edit or a placement back, or brings it back.
 struct UndoRequest {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <set>
 
 #include "core/correction_check.hpp"
 
@@ -168,14 +169,20 @@ void EditLayer::refresh(BrickIndex index, const History& history, BrickSet& touc
   if (pins_.set(index, pins)) touched.insert(index);
 }
 
-bool EditLayer::changed_since(const PinnedBricks& bricks, std::int64_t base) const {
+bool EditLayer::changed_since(const PinnedBricks& bricks, std::int64_t base,
+                              const std::vector<std::string>& known) const {
+  std::set<std::uint32_t> no_change;
+  for (const std::string& id : known) {
+    if (const auto it = by_id_.find(id); it != by_id_.end() && edits_[it->second].active) no_change.insert(it->second);
+  }
   return std::ranges::any_of(bricks, [&](const auto& entry) {
     const BrickIndex index = entry.first;
     const PinBrick& pins = entry.second;  // clang 14 captures no structured binding
     const auto it = by_brick_.find(index);
     if (it == by_brick_.end() || it->second.last_revision <= base) return false;
     return std::ranges::any_of(it->second.edits, [&](std::uint32_t edit) {
-      return edits_[edit].last_revision > base && share_a_voxel(pins, edits_[edit].pins.pins_in(index));
+      return edits_[edit].last_revision > base && !no_change.contains(edit) &&
+             share_a_voxel(pins, edits_[edit].pins.pins_in(index));
     });
   });
 }

@@ -67,8 +67,10 @@ class EditLayer {
   /// @pre check(undo) and `revision` is above all before.
   void apply(std::int64_t revision, const Correction::Undo& undo, BrickSet& touched);
 
-  /// Whether an operation later than `base` (an edit made, undone or redone) has a voxel in common with these.
-  [[nodiscard]] bool changed_since(const PinnedBricks& bricks, std::int64_t base) const;
+  /// Whether an operation later than `base` (an edit made, undone or redone) has a voxel in common with these. Those of
+  /// `known` that hold do not count.
+  [[nodiscard]] bool changed_since(const PinnedBricks& bricks, std::int64_t base,
+                                   const std::vector<std::string>& known = {}) const;
 
   [[nodiscard]] bool contains(const std::string& edit_id) const { return by_id_.contains(edit_id); }
   /// @pre contains(edit_id).

@@ -26,14 +26,22 @@ void MapsNode::advance(const MapRequest& request, std::uint64_t content) {
   };
   if (const auto opened = open(request, content); !opened) return deny(opened.error());
   const bool has_all = has_layers();
-  if (!has_all && opened_->fits_at == parts_.people.revision()) return say_may_load(request);
-  const auto corrections = following();
-  if (!corrections) return deny(corrections.error());
-  opened_->fits_at = parts_.people.revision();
-  if (!has_all) return say_may_load(request);
-  if (const auto done = parts_.people_node.commit(*corrections); !done) return deny(done.error());
+  if (has_all || opened_->fits_at != parts_.people.revision()) {
+    const auto corrections = following();
+    if (!corrections) return deny(corrections.error());
+    opened_->fits_at = parts_.people.revision();
+    if (has_all) return take_over(request, *corrections, content);
+  }
+  if (const auto may = labels_may_load(); !may) return deny(may.error());
+  say_may_load(request);
+}
+
+void MapsNode::take_over(const MapRequest& request, const std::vector<Correction>& corrections, std::uint64_t content) {
+  if (const auto done = parts_.people_node.commit(corrections); !done) {
+    return answers_.give(replies_.denied(kRequests, request.id, done.error()), content, request.utime);
+  }
   opened_.reset();
-  answers_.give(replies_.granted(request.id, parts_.people.revision(), static_cast<std::int64_t>(corrections->size()),
+  answers_.give(replies_.granted(request.id, parts_.people.revision(), static_cast<std::int64_t>(corrections.size()),
                                  "took over what people corrected"),
                 content);
 }
@@ -100,6 +108,17 @@ bool MapsNode::has_layers() const {
     const auto state = parts_.agents.state_of(layer.head.agent);
     return state && state->synced && parts_.agents.incarnation(layer.head.agent) == opened_->incarnation;
   });
+}
+
+/// What semantic refuses must not have been loaded by half. Where it does not run there is nothing to wait for. @pre
+/// opened_.
+Result<void> MapsNode::labels_may_load() const {
+  if (!semantic_heard_ || context_.bus.now() - *semantic_heard_ > kSemanticSilence) return {};
+  if (!opened_->labels) {
+    return refuse(Code::kBusy, "semantic has not looked at its labels yet; ask again in a second");
+  }
+  if (opened_->labels->ok || opened_->labels->code == name(Code::kBusy)) return {};
+  return refuse(Code::kConflict, "its labels cannot be taken over: " + opened_->labels->message);
 }
 
 /// Ingest listens for this. The revision names the very file that was checked, and the request. @pre opened_.

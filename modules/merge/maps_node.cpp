@@ -15,8 +15,6 @@ namespace {
 /// Long after a client that waits for layers would have asked again.
 constexpr std::int64_t kKeepOpened = 60'000'000;
 constexpr std::int64_t kForgetPeriod = 10'000'000;
-/// Of a process that says its status each second: longer, and it is busy, or does not run.
-constexpr std::int64_t kSilence = 3'500'000;
 /// Longer, and it does not run. Between the two a map would be saved without labels that somebody keeps.
 constexpr std::int64_t kGone = 90'000'000;
 
@@ -47,6 +45,12 @@ MapsNode::MapsNode(const NodeContext& context, const Parts& parts)
                      });
   listen<ProcessStatus>(context_.bus, context_.counters, context_.process, "out/status/semantic",
                         [this](const std::string&, const ProcessStatus&) { semantic_heard_ = context_.bus.now(); });
+  listen<Answer>(context_.bus, context_.counters, context_.process, kAnswers,
+                 [this](const std::string&, const Answer& answer) {
+                   if (opened_ && answer.id == opened_->request_id && answer.process == "semantic") {
+                     opened_->labels = answer;
+                   }
+                 });
   context_.bus.every(kForgetPeriod, [this] {
     if (opened_ && context_.bus.now() - opened_->asked >= kKeepOpened) opened_.reset();
   });
@@ -108,8 +112,8 @@ Result<std::optional<Bytes>> MapsNode::labels_for(const MapRequest& request) con
   const std::int64_t silent = context_.bus.now() - semantic_heard_.value_or(start_);
   std::error_code error;
   const bool has_run = semantic_heard_ || std::filesystem::exists(context_.site.state / "semantic.db", error);
-  if (silent > (has_run ? kGone : kSilence)) return std::nullopt;
-  if (silent > kSilence) {
+  if (silent > (has_run ? kGone : kSemanticSilence)) return std::nullopt;
+  if (silent > kSemanticSilence) {
     return refuse(Code::kBusy, "semantic, which keeps the labels, has said nothing for " +
                                    std::to_string(silent / 1'000'000) +
                                    " s; ask again (without a word of it for 90 s the map is saved without labels)");

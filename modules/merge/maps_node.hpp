@@ -56,17 +56,22 @@ class MapsNode {
     std::int64_t fits_at = -1;       ///< our revision that its corrections were last found to follow on
     CorrectionCheck ours;            ///< has taken our corrections
     std::int64_t ours_revision = 0;  ///< up to this one
+    std::optional<Answer> labels;    ///< semantic's last word on them
   };
   /// Whether the file may be loaded, then whether its layers are there, then what people corrected.
   void advance(const MapRequest& request, std::uint64_t content);
   [[nodiscard]] Result<void> open(const MapRequest& request, std::uint64_t content);
+  void take_over(const MapRequest& request, const std::vector<Correction>& corrections, std::uint64_t content);
   [[nodiscard]] Result<std::vector<Correction>> following();
   [[nodiscard]] Result<void> take_ours();
   [[nodiscard]] bool has_layers() const;
+  [[nodiscard]] Result<void> labels_may_load() const;
   void say_may_load(const MapRequest& request);
 
   static inline const std::string kRequests = "in/map_request";
   static inline const std::string kNative = "concord";
+  /// It says its status each second: longer, microseconds, and it is busy, or does not run.
+  static constexpr std::int64_t kSemanticSilence = 3'500'000;
 
   NodeContext context_;
   Parts parts_;

@@ -42,7 +42,7 @@ Result<Correction::Edit> People::check(const EditRequest& request, const Transfo
   if (!edit) return edit;
   const PinnedBricks bricks = by_brick(*edit);
   if (const auto room = edits_.check(bricks); !room) return tl::unexpected(room.error());
-  if (request.base_revision >= 0 && edits_.changed_since(bricks, request.base_revision)) {
+  if (request.base_revision >= 0 && edits_.changed_since(bricks, request.base_revision, request.known)) {
     return refuse(Code::kStaleRevision, "these voxels were changed since revision " +
                                             std::to_string(request.base_revision) + "; look at them, then ask again");
   }

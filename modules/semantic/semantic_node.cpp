@@ -150,6 +150,9 @@ void SemanticNode::on_request(const LabelRequest& request) {
   const std::uint64_t content = content_without_time(request);
   if (repeat(request, content)) return;
   if (request.op == LabelRequest::Op::kDelete) return on_delete(request, content);
+  if (const auto is_free = store_.was_asked(request.id, content); !is_free) {  // a deletion may have this id
+    return replies_.deny(kRequests, request.id, is_free.error());
+  }
   auto what = check(request);
   if (!what) return replies_.deny(kRequests, request.id, what.error());
   if (const auto done = commit(request.id, request.author, content, std::move(*what)); !done) {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "bus/site.hpp"
+#include "core/decimal.hpp"
 #include "core/map_archive_fields.hpp"
 #include "semantic/labels/label_section.hpp"
 #include "semantic/semantic_schema.hpp"
@@ -24,9 +25,12 @@ SemanticStore::SemanticStore(const std::filesystem::path& file, double resolutio
       spend_(database_.prepare("UPDATE thing_numbers SET spent = spent + ? RETURNING spent")),
       asked_(database_.prepare("SELECT content FROM deletions WHERE id = ?")),
       delete_(database_.prepare("INSERT INTO deletions VALUES (?,?)")) {
+  Statement count = database_.prepare("SELECT COUNT(*) FROM deletions");
+  count.bind();
+  if (const auto row = count.step(); row && *row) deletions_ = static_cast<std::size_t>(count.integer(0));
   const double kept = kept_resolution(database_, resolution);
   if (std::abs(kept - resolution) <= 1e-9) return;
-  throw ConfigError("the labels in this state folder are for " + std::to_string(kept) +
+  throw ConfigError("the labels in this state folder are for " + decimal(kept) +
                     " m voxels; set resolution to that, or start with another state folder");
 }
 
@@ -72,7 +76,8 @@ Result<bool> SemanticStore::was_asked(const std::string& deletion_id, std::uint6
 }
 
 Result<void> SemanticStore::put_deletion(const std::string& id, std::uint64_t content) {
-  return delete_.run(id, static_cast<std::int64_t>(content));
+  if (deletions_ >= kMaxLabelCorrections) return refuse(Code::kTooLarge, "no more deletions are kept");
+  return delete_.run(id, static_cast<std::int64_t>(content)).map([&] { ++deletions_; });
 }
 
 Result<void> SemanticStore::for_each(const std::function<Result<void>(LabelCorrection)>& visit) {

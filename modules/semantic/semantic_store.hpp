@@ -27,6 +27,7 @@ class SemanticStore {
 
   /// Whether this very deletion was asked for by this id before. Refused: another one was (kExists); kIo.
   [[nodiscard]] Result<bool> was_asked(const std::string& deletion_id, std::uint64_t content);
+  /// Refused: kTooLarge, as many as label requests are kept; kIo.
   [[nodiscard]] Result<void> put_deletion(const std::string& id, std::uint64_t content);
 
   /// In the order of their revisions. Refused (kIo): the file is damaged; and what `visit` refuses.
@@ -37,6 +38,7 @@ class SemanticStore {
  private:
   Database database_;
   Statement put_, place_, spend_, asked_, delete_;
+  std::size_t deletions_ = 0;
 };
 
 }  // namespace concord

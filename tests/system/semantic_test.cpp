@@ -7,7 +7,9 @@
 
 #include "bus/messages_detection.hpp"
 #include "noise.hpp"
+#include "semantic/labels/semantic_cloud.hpp"
 #include "stack_fixture.hpp"
+#include "store/whole_file.hpp"
 
 // Labels, assets and things through the real processes, which are killed between two steps and within them.
 
@@ -40,6 +42,13 @@ class SemanticSystemTest : public StackFixture {
   nlohmann::json concord(const std::string& arguments) const {
     return nlohmann::json::parse(stack_->concord(*person_, "--json --timeout 20 " + arguments));
   }
+  void forget(const std::string& process) {
+    stack_->kill(process);
+    for (const char* part : {".db", ".db-wal", ".db-shm"}) {
+      std::filesystem::remove(stack_->folder() / "state" / (process + part));
+    }
+    stack_->start(process);
+  }
   void restart(const std::string& process) {
     stack_->kill(process);
     stack_->start(process);
@@ -71,11 +80,7 @@ TEST_F(SemanticSystemTest, labels_outlive_kills_and_come_back_with_a_saved_map) 
   concord("remove robot1");
   ASSERT_TRUE(happens([&] { return agents_.empty(); }));
 
-  stack_->kill("semantic");
-  for (const char* part : {".db", ".db-wal", ".db-shm"}) {
-    std::filesystem::remove(stack_->folder() / "state" / (std::string("semantic") + part));
-  }
-  stack_->start("semantic");
+  forget("semantic");
   const auto loaded = concord("load hall");
   EXPECT_TRUE(loaded.contains("semantic")) << loaded;
   EXPECT_TRUE(shows(labels));
@@ -94,26 +99,50 @@ TEST_F(SemanticSystemTest, labels_go_to_a_file_and_come_back_to_the_byte) {
     std::ifstream in(file(name), std::ios::binary);
     return std::string(std::istreambuf_iterator<char>(in), {});
   };
-  const auto forget_labels = [&] {
-    stack_->kill("semantic");
-    for (const char* part : {".db", ".db-wal", ".db-shm"}) {
-      std::filesystem::remove(stack_->folder() / "state" / (std::string("semantic") + part));
-    }
-    stack_->start("semantic");
-  };
   const auto saved = concord("labels --out " + file("before.pcd"));
   EXPECT_GT(saved["labelled"], 0);
-  forget_labels();
+  forget("semantic");
   EXPECT_EQ(concord("labels --load " + file("before.pcd"))["instances"], 3);
   concord("labels --out " + file("after.pcd"));
   EXPECT_EQ(bytes("before.pcd"), bytes("after.pcd"));
   concord("labels --out " + file("before.ply"));
 
-  forget_labels();
+  forget("semantic");
   concord("label add desk --box \"0.5 0.5 0 0.7 0.7 0.2\"");
   const auto labels = concord("labels");
   EXPECT_EQ(stack_->start_concord(*person_, {"labels", "--load", file("before.ply")}).wait(), 3) << "class 1 is desk";
   EXPECT_EQ(concord("labels"), labels) << "nothing of it was labelled";
+}
+
+TEST_F(SemanticSystemTest, of_a_file_of_labels_whose_last_is_refused_none_stays) {
+  ASSERT_NO_FATAL_FAILURE(place_a_robot());
+  concord("label add door --box \"0 0 0 0.2 0.2 0.2\"");
+  concord("label add door --box \"0.5 0.5 0 0.7 0.7 0.2\"");
+  const std::string file = (stack_->folder() / "doors.pcd").string();
+  concord("labels --out " + file);
+  SemanticCloud cloud = read_pcd(read_whole_file(file, 10'000'000).value()).value();
+  for (SemanticPoint& point : cloud.points) {
+    if (point.instance == 2) point.instance = (1U << 30) + 5;  // nobody may ask for that one
+  }
+  ASSERT_TRUE(write_whole_file(file, write_pcd(cloud)));
+  forget("semantic");
+  EXPECT_EQ(stack_->start_concord(*person_, {"labels", "--load", file}).wait(), 3);
+  EXPECT_TRUE(concord("labels")["instances"].empty()) << concord("labels");
+  EXPECT_EQ(concord("labels --classes")["instances"].size(), 1U) << "the first was labelled before it was taken back";
+}
+
+TEST_F(SemanticSystemTest, a_map_whose_labels_are_refused_is_not_loaded_at_all) {
+  ASSERT_NO_FATAL_FAILURE(place_a_robot());
+  concord("label add shelf" + kBox + " --id same");
+  concord("save hall --format concord");
+  concord("remove robot1");
+  ASSERT_TRUE(happens([&] { return agents_.empty(); }));
+  forget("semantic");
+  forget("merge");
+  concord("edit add --box \"5 5 0 5.5 5.5 0.5\"");
+  concord("label add table --box \"5 5 0 5.5 5.5 0.5\" --id same");
+  EXPECT_EQ(stack_->start_concord(*person_, {"load", "hall"}).wait(), 3);
+  EXPECT_TRUE(concord("agents")["agents"].empty()) << concord("agents");
 }
 
 TEST_F(SemanticSystemTest, an_asset_is_injected_moved_and_taken_out_across_kills) {

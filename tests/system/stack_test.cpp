@@ -105,6 +105,12 @@ TEST_F(StackSystemTest, the_map_outlives_its_agents_and_every_process) {
   EXPECT_TRUE(map_becomes(before));
 }
 
+TEST_F(StackSystemTest, a_lease_that_is_held_for_some_time_is_freed_at_its_end) {
+  stack_->start_all();
+  EXPECT_EQ(stack_->start_concord(*person_, {"lease", "hold", "mine", "--box", "0 0 0 1 1 1", "--for", "1"}).wait(), 0);
+  EXPECT_EQ(stack_->concord(*person_, "leases").find("mine"), std::string::npos);
+}
+
 TEST_F(StackSystemTest, who_frees_a_lease_ends_the_client_that_renews_it) {
   stack_->start_all();
   const std::string where = " --box \"0 0 0 1 1 1\" --author ";

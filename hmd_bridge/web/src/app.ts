@@ -57,7 +57,7 @@ export class App {
   ) {
     this.own = new Signal(hello);
     this.ask = (name, body) => link.request(name, body);
-    this.draft = new SceneDraft(this.ask, news, localStorage);
+    this.draft = new SceneDraft(this.ask, news, sessionStorage);
     this.editor = new Editor(this.ask, news, this.draft);
     this.obstacles = new Obstacles(this.ask, this.editor, news, localStorage);
     this.editor.setThickness(hello.resolution);

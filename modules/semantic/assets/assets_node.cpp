@@ -264,11 +264,6 @@ void AssetsNode::on_operation(const Operation& operation, BrickSet& touched) {
   injections_.reset();
 }
 
-void AssetsNode::on_told() {
-  send_waiting();
-  answer_askers();
-}
-
 void AssetsNode::answer_askers() {
   if (asked_.empty() || !parts_.history.is_up_to_date()) return;
   for (auto asker = asked_.begin(); asker != asked_.end();) {
@@ -280,10 +275,11 @@ void AssetsNode::answer_askers() {
     LabelInstance instance = parts_.instance(one->of);
     instance.asset = one->what.asset;
     instance.T_map_asset = one->what.T_map_asset;
+    const char* done = one->what.replaces.empty() ? " is put in" : " is moved";
     context_.bus.publish("out/label_list", encode(LabelList{one->request_id, 0, 1, {instance}}, context_.bus.now()));
-    replies_.grant(one->request_id, parts_.labels.find(one->request_id)->revision, one->count,
-                   class_of(*one) + " " + std::to_string(one->of.instance) + " is put in" + asker->second + "; edit " +
-                       one->edit_id);
+    replies_.grant(
+        one->request_id, parts_.labels.find(one->request_id)->revision, one->count,
+        class_of(*one) + " " + std::to_string(one->of.instance) + done + asker->second + "; edit " + one->edit_id);
     asker = asked_.erase(asker);
   }
 }

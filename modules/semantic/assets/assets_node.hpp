@@ -61,7 +61,10 @@ class AssetsNode {
 
   /// Merge did something; all was told that it did until now.
   void on_operation(const Operation& operation, BrickSet& touched);
-  void on_told();
+  void on_told() {
+    send_waiting();
+    answer_askers();
+  }
 
   [[nodiscard]] const std::map<std::string, Asset>& assets() const { return folder_.assets(); }
   [[nodiscard]] const Injections& injections() const;

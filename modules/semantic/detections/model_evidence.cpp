@@ -70,6 +70,13 @@ bool is_at(const BrickMasks& furniture, VoxelIndex v) {
          furniture.contains({v.x, v.y, v.z - 1}) || furniture.contains({v.x, v.y, v.z + 1});
 }
 
+/// Nobody has seen it: it was filled, as injected models are, and in its number would outvote all that was seen.
+bool is_inside(const BrickMasks& occupied, VoxelIndex v) {
+  return occupied.contains({v.x - 1, v.y, v.z}) && occupied.contains({v.x + 1, v.y, v.z}) &&
+         occupied.contains({v.x, v.y - 1, v.z}) && occupied.contains({v.x, v.y + 1, v.z}) &&
+         occupied.contains({v.x, v.y, v.z - 1}) && occupied.contains({v.x, v.y, v.z + 1});
+}
+
 /// A box about as large as a pump has its corners where the pump has nothing.
 double explained(const ModelBody& body, const SearchedMap& searched, const Transform& T_map_model) {
   const double resolution = searched.resolution;
@@ -122,11 +129,11 @@ SearchedMap::SearchedMap(const BrickMap& of, double metres)
   const RoomPlanes room = find_room_planes(occupied, resolution);
   furniture.erase(room.voxels);
   // A floor is scanned two voxels thick; taken for furniture it would be a seat to every chair sunk into it.
-  BrickMasks low;
+  BrickMasks none;
   for (const VoxelIndex v : furniture.voxels()) {
-    if (room.floor_z && v.z <= *room.floor_z + 1) low.insert(v);
+    if ((room.floor_z && v.z <= *room.floor_z + 1) || is_inside(occupied, v)) none.insert(v);
   }
-  furniture.erase(low);
+  furniture.erase(none);
   map.for_each_brick([&](BrickIndex, const Brick& brick) {
     if (has_free) return;
     DenseBrick dense;

@@ -50,7 +50,8 @@ struct SearchedMap {
   const BrickMap& map;
   double resolution;
   BrickMasks occupied;
-  BrickMasks furniture;  ///< occupied, but not floor, ceiling or wall, nor in the two layers from the floor up
+  BrickMasks furniture;  ///< occupied, but not floor, ceiling or wall, nor in the two layers from the floor up, nor
+                         ///< amidst others
   bool has_free = false;
 };
 

@@ -105,7 +105,7 @@ Result<Sightings::Seen> Sightings::see(const Detection& detection, const std::st
   kept->heard = now;
   seen.is_dropped = kept->is_dropped;
   thing.author = detection.author;
-  follow(detection, *kept);
+  if (!kept->is_dropped) follow(detection, *kept);
 
   if (thing.injection.empty()) {
     if (distance(thing.T_map_asset, T_map_asset) > kSameThing) kept->weight = 0;  // it was followed there
@@ -113,19 +113,28 @@ Result<Sightings::Seen> Sightings::see(const Detection& detection, const std::st
     kept->weight = std::min(kept->weight + weight, kMostWeight);
     thing.T_map_asset = between(thing.T_map_asset, T_map_asset, std::min(1.0, weight / kept->weight));
   } else if (lies_at(*kept, T_map_asset)) {
-    kept->agreeing = 0;
+    see_there(*kept, now);
   } else {
     see_elsewhere(*kept, T_map_asset, now, seen);
   }
   return seen;
 }
 
+void Sightings::see_there(Kept& kept, std::int64_t now) {
+  kept.agreeing = 0;
+  if (!kept.still_since) kept.still_since = now;
+  if (now - *kept.still_since < kStill * kept.pause) return;
+  kept.pause = std::max(kept.pause / 2, kFirstPause);
+  kept.still_since = now;
+}
+
 void Sightings::see_elsewhere(Kept& kept, const Transform& T_map_asset, std::int64_t now, Seen& seen) {
   const bool agrees = kept.agreeing > 0 && distance(kept.elsewhere, T_map_asset) <= kMoved;
   kept.agreeing = agrees ? std::min(kept.agreeing + 1, 10) : 1;
   kept.elsewhere = agrees ? between(kept.elsewhere, T_map_asset, 1.0 / kept.agreeing) : T_map_asset;
-  if (kept.agreeing < kAgreeing || now < kept.next_move) return;
-  if (now - kept.next_move >= kLongestPause) kept.pause = kFirstPause;
+  if (kept.agreeing < kAgreeing) return;
+  kept.still_since.reset();
+  if (now < kept.next_move) return;
   seen.moved_to = kept.elsewhere;
   kept.next_move = now + kept.pause;
   kept.pause = std::min(2 * kept.pause, kLongestPause);
@@ -177,7 +186,10 @@ void Sightings::forget(std::int64_t number) {
 
 void Sightings::drop(std::int64_t number) {
   const auto it = things_.find(number);
-  if (it != things_.end()) it->second.is_dropped = true;
+  if (it == things_.end()) return;
+  it->second.is_dropped = true;
+  for (const auto& name : it->second.names) followed_.erase(name);
+  it->second.names.clear();
 }
 
 void Sightings::forget_dropped(std::int64_t now) {

@@ -23,8 +23,9 @@ inline constexpr double kTurned = 0.5;  ///< radians
 /// within kSameThing; else of a new one. Until a person confirms it, a thing lies where its sightings lie on average,
 /// each by its score, the last ten counting. Confirmed, it stays where it was put until kAgreeing sightings in a row
 /// agree that it is somewhere else. Whoever is off a little sees it a little off, always: where it is seen while it
-/// lies where it was put is as good as there. A move is kept for good, so each is called for later after the one before
-/// than that was, be it that nothing came of it or that the thing is always on its way.
+/// lies where it was put is as good as there. A move is kept for good, so each is called for twice as long after the
+/// one before as that was, be it that nothing came of it or that the thing is always on its way; half as long for each
+/// time that it was seen to lie still for kStill such pauses: so it is a tenth of its time where it is not, at most.
 ///
 /// What a person dropped is known for none, and not told of, until nobody has seen it for kDroppedFor, or somebody puts
 /// one there.
@@ -32,10 +33,11 @@ class Sightings {
  public:
   static constexpr double kSameThing = 0.5;  ///< metres
   static constexpr int kAgreeing = 3;
-  static constexpr std::size_t kMostFollowers = 32;             ///< of one thing, who have a name for it
-  static constexpr std::int64_t kFirstPause = 5'000'000;        ///< after a move was called for, microseconds
-  static constexpr std::int64_t kLongestPause = 3'600'000'000;  ///< and so long after its end all begins anew
-  static constexpr std::int64_t kDroppedFor = 600'000'000;      ///< microseconds
+  static constexpr std::size_t kMostFollowers = 32;       ///< of one thing, who have a name for it
+  static constexpr std::int64_t kFirstPause = 5'000'000;  ///< after a move was called for, microseconds
+  static constexpr std::int64_t kLongestPause = 600'000'000;
+  static constexpr int kStill = 10;
+  static constexpr std::int64_t kDroppedFor = 600'000'000;  ///< microseconds
   /// None twice, over all restarts. Refused: kIo.
   using NextNumber = std::function<Result<std::int64_t>()>;
 
@@ -64,7 +66,7 @@ class Sightings {
   void seen_there(std::int64_t number);
   /// It is there no more.
   void forget(std::int64_t number);
-  /// A person says that it is none.
+  /// A person says that it is none. What others call it is let go: the object that they follow may be elsewhere.
   void drop(std::int64_t number);
   /// Lets go of what was dropped and not seen for long.
   void forget_dropped(std::int64_t now);
@@ -81,11 +83,13 @@ class Sightings {
     int agreeing = 0;                  ///< sightings in a row that it is elsewhere
     std::optional<Transform> seen_at;  ///< while it lies where it was put
     std::int64_t next_move = 0, pause = kFirstPause;
+    std::optional<std::int64_t> still_since;
     std::map<std::string, std::string> names;  ///< by who follows it
   };
   [[nodiscard]] static bool lies_at(const Kept& kept, const Transform& T_map_asset);
   [[nodiscard]] Result<Kept*> add_thing(const std::string& asset, const Transform& T_map_asset);
   void follow(const Detection& detection, Kept& kept);
+  static void see_there(Kept& kept, std::int64_t now);
   static void see_elsewhere(Kept& kept, const Transform& T_map_asset, std::int64_t now, Seen& seen);
   [[nodiscard]] Kept* thing_of(const Detection& detection, const std::string& asset, const Transform& T_map_asset);
   [[nodiscard]] bool make_room();

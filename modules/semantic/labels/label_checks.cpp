@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <ranges>
 
 #include "core/text.hpp"
 #include "core/voxel_runs.hpp"
@@ -24,10 +25,19 @@ std::string words(InstanceId of) {
   return "instance " + std::to_string(of.instance) + " of class " + std::to_string(of.label);
 }
 
-/// The number after the highest that was given.
-Result<std::uint32_t> next(std::uint32_t highest) {
-  if (highest < kMostGiven) return highest + 1;
-  return refuse(Code::kTooLarge, "the numbers have come to their end: a map was loaded that has the last one");
+/// One that was never given: after the highest; where a map was loaded that has the last of all, the first that is
+/// left.
+/// @param given ascending, fewer than there are numbers
+template <class Numbers>
+std::uint32_t next(const Numbers& given) {
+  std::uint32_t gap = 1;
+  if (std::ranges::empty(given)) return gap;
+  if (const std::uint32_t highest = *std::ranges::rbegin(given); highest < kMostGiven) return highest + 1;
+  for (const std::uint32_t number : given) {
+    if (number != gap) break;
+    ++gap;
+  }
+  return gap;
 }
 
 }  // namespace
@@ -112,14 +122,11 @@ Result<Claim> Labels::numbered(const LabelRequest& request) const {
     if (const auto there = check_instance({*known, request.of.instance}); !there) return tl::unexpected(there.error());
   } else {
     if (request.of.instance != 0) return refuse(Code::kNotFound, "no class " + request.name + "; see: concord labels");
-    const auto label = next(classes_.empty() ? 0 : classes_.rbegin()->first);
-    if (!label) return tl::unexpected(label.error());
-    claim.of.label = *label;
+    claim.of.label = next(std::views::keys(classes_));
     claim.class_name = request.name;
   }
-  const auto fresh = next(known ? classes_.at(*known).highest() : 0);
-  if (request.of.instance == 0 && !fresh) return tl::unexpected(fresh.error());
-  claim.of.instance = request.of.instance != 0 ? request.of.instance : *fresh;
+  claim.of.instance = request.of.instance;
+  if (claim.of.instance == 0) claim.of.instance = known ? next(classes_.at(*known).given) : 1;
   return claim;
 }
 
@@ -154,9 +161,7 @@ Result<Labels::What> Labels::check_reassign(const LabelRequest& request) const {
   if (const auto there = check_instance(to); !there) return tl::unexpected(there.error());
   if (to.instance == 0) {
     if (instances_ >= kMaxInstances) return refuse(Code::kTooLarge, "no more instances can be told apart");
-    const auto fresh = next(classes_.at(*label).highest());
-    if (!fresh) return tl::unexpected(fresh.error());
-    to.instance = *fresh;
+    to.instance = next(classes_.at(*label).given);
   }
   if (to == request.of) return refuse(Code::kConflict, "it is that instance already");
   return Reassign{request.of, to};

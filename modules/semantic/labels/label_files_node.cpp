@@ -73,12 +73,17 @@ void LabelFilesNode::open(const MapRequest& request) {
     if (!file) return;  // merge says so
     auto theirs = labels_of_map_archive(*file).and_then([](const Bytes& labels) { return read_label_section(labels); });
     if (!theirs) return replies_.deny(kRequests, request.id, theirs.error());
-    opened_ = Opened{request.id, std::move(*theirs), 0};
+    opened_ = Opened{request.id, std::move(*theirs)};
   }
   opened_->asked = context_.bus.now();
-  const auto fits = labels_to_load(opened_->theirs, parts_.labels);
-  if (!fits) return replies_.deny(kRequests, request.id, fits.error());
-  if (fits->empty()) return replies_.grant(request.id, parts_.labels.revision(), 0, "no label in it that is not here");
+  if (opened_->fits != parts_.labels.revision()) {  // asked again, nothing is found out twice
+    const auto fits = labels_to_load(opened_->theirs, parts_.labels);
+    if (!fits) return replies_.deny(kRequests, request.id, fits.error());
+    opened_->has_news = !fits->empty();
+    opened_->fits = parts_.labels.revision();
+  }
+  if (!opened_->has_news)
+    return replies_.grant(request.id, parts_.labels.revision(), 0, "no label in it that is not here");
   replies_.deny(kRequests, request.id,
                 {Code::kBusy, "its labels follow when the map is loaded; ask again in a second"});
 }

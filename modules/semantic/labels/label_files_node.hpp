@@ -43,6 +43,8 @@ class LabelFilesNode {
     std::string request_id;
     std::vector<LabelCorrection> theirs;
     std::int64_t asked = 0;
+    std::int64_t fits = -1;  ///< the revision of ours at which that was found
+    bool has_news = false;
   };
 
   NodeContext context_;

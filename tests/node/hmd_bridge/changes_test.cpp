@@ -114,13 +114,14 @@ TEST_F(Working, ASceneGoesOutAndComesBack) {
       revision,
       Frame::kMap,
       {{EditOp::kAdd, box(1, 1, 0.2, 1.5, 1.5, 0.5)}, {EditOp::kDelete, box(1, 1, 0.2, 1.2, 1.2, 0.5)}},
-      {{"dock", ZoneKind::kNoGo, Box{{3, 3, 0}, {4, 4, 1}}}}};
+      {{"dock", ZoneKind::kNoGo, Box{{3, 3, 0}, {4, 4, 1}}}},
+      {}};
   const Json sent = ana.ask(scene);
   EXPECT_CODE(sent, "OK");
   EXPECT_EQ(sent["answer"]["edits"].size(), 2u);
   EXPECT_EQ(sent["answer"]["zones"], 1);
   EXPECT_CODE(ana.ask(scene), "STALE_REV") << "others changed it since";
-  EXPECT_CODE(ana.ask(SceneSendRequest{revision, Frame::kMap, {}, {}}), "EMPTY");
+  EXPECT_CODE(ana.ask(SceneSendRequest{revision, Frame::kMap, {}, {}, {}}), "EMPTY");
   EXPECT_CODE(ana.ask(SceneGetRequest{Frame::kMap, {0, 0, 0}, 21}), "BAD_REQUEST");
 }
 

@@ -59,7 +59,7 @@ TEST_F(Beside, ChangingAndDeletingAZone) {
 TEST_F(Beside, SendingAScene) {
   const std::int64_t revision = ana.ask(SceneGetRequest{Frame::kMap, {3.2, 3.2, 0}, 20})["answer"]["revision"];
   hold();
-  EXPECT_CODE(ana.ask(SceneSendRequest{revision, Frame::kMap, {{EditOp::kAdd, inside}}, {}}), "LOCKED");
+  EXPECT_CODE(ana.ask(SceneSendRequest{revision, Frame::kMap, {{EditOp::kAdd, inside}}, {}, {}}), "LOCKED");
 }
 
 /// What was done is answered, not refused: the rest can be sent again.
@@ -67,13 +67,29 @@ TEST_F(Beside, OfASceneThatIsStoppedTheRestCanBeSentAgain) {
   const std::int64_t revision = ana.ask(SceneGetRequest{Frame::kMap, {3.2, 3.2, 0}, 20})["answer"]["revision"];
   hold();
   const Shape outside = box(1, 1, 0.2, 1.5, 1.5, 0.5);
-  const Json stopped =
-      ana.ask(SceneSendRequest{revision, Frame::kMap, {{EditOp::kAdd, outside}, {EditOp::kAdd, inside}}, {}})["answer"];
+  const Json stopped = ana.ask(
+      SceneSendRequest{revision, Frame::kMap, {{EditOp::kAdd, outside}, {EditOp::kAdd, inside}}, {}, {}})["answer"];
   ASSERT_EQ(stopped["edits"].size(), 1u) << stopped;
   EXPECT_EQ(stopped["stopped"]["code"], "LOCKED");
-  const Json rest = ana.ask(SceneSendRequest{stopped["revision"], Frame::kMap, {{EditOp::kAdd, outside}}, {}});
+  const SceneSendRequest again{revision, Frame::kMap, {{EditOp::kAdd, outside}}, {}, {}};
+  EXPECT_CODE(ana.ask(again), "STALE_REV");
+  SceneSendRequest knowing = again;
+  knowing.known = std::vector{stopped["edits"][0].get<std::string>()};
+  const Json rest = ana.ask(knowing);
   EXPECT_CODE(rest, "OK") << "what it did itself is no change by others";
   EXPECT_FALSE(rest["answer"].contains("stopped")) << rest;
+  EXPECT_CODE(bert->ask(UndoRequest{stopped["edits"][0]}), "OK");
+  EXPECT_CODE(ana.ask(knowing), "STALE_REV") << "that is one";
+}
+
+TEST_F(Beside, ASceneMayChangeTheSameVoxelsTwiceWhateverOthersDoElsewhere) {
+  const std::int64_t revision = ana.ask(SceneGetRequest{Frame::kMap, {3.2, 3.2, 0}, 20})["answer"]["revision"];
+  EXPECT_CODE(bert->ask(add(box(5, 5, 0.2, 5.2, 5.2, 0.4))), "OK");
+  const Shape corner = box(3.2, 3.2, 0.2, 3.3, 3.3, 0.4);
+  const std::vector<SceneEdit> edits = {{EditOp::kAdd, inside}, {EditOp::kDelete, corner}, {EditOp::kAdd, corner}};
+  const Json sent = ana.ask(SceneSendRequest{revision, Frame::kMap, edits, {}, {}});
+  EXPECT_CODE(sent, "OK");
+  EXPECT_EQ(sent["answer"]["edits"].size(), 3u) << sent;
 }
 
 TEST_F(Beside, AddingAndRemovingAnObstacle) {

@@ -165,6 +165,35 @@ TEST_F(Working, AnObstacleAfterWhichThePlannerFallsSilentIsTakenBack) {
   EXPECT_CODE(ana.ask(ObstacleAddRequest{Frame::kMap, Box{{3, 0, 0.1}, {3.2, 3, 0.8}}, {}}), "TIMEOUT");
 }
 
+TEST_F(Working, AnObstacleOfOneWhoHasGoneIsTakenBackAllTheSame) {
+  EXPECT_CODE(ana.ask(GoalRequest{"robot1", Frame::kMap, Pose{{5, 1, 0}, {0, 0, 0, 1}}}), "OK");
+  lab.run(1.5);
+  const ObstacleAddRequest wall{Frame::kMap, Box{{3, -1, 0.1}, {3.2, 7, 0.8}}, {}};
+  lab.bridge->hub().text(ana.connection, request_text(ana.next_id(), wall), lab.bus->now());
+  ana.lose();
+  lab.bridge->hub().tick(lab.bus->now() + 3600'000'000LL);  // the session is forgotten
+  lab.run(4);
+  Client bert(lab);
+  ASSERT_TRUE(has_code(bert.hello(), "OK"));
+  EXPECT_EQ(bert.ask(PathRequest{"robot1", Frame::kMap, false})["answer"]["path"]["status"], "OK");
+}
+
+TEST_F(Working, WhoFollowsAPathHearsThatNobodyKeepsItUp) {
+  EXPECT_CODE(ana.ask(PathRequest{"robot1", Frame::kMap, true}), "OK");
+  concord::Path path;
+  path.id = "kept";
+  path.robot = "robot1";
+  path.active = true;
+  path.status = "OK";
+  lab.bus->publish("out/path/robot1", encode(path));
+  lab.run(0.3);
+  ana.read();
+  ASSERT_EQ(ana.events["path"]["path"]["status"], "OK");
+  lab.run(5);
+  ana.read();
+  EXPECT_EQ(ana.events["path"]["path"]["status"], "NO_PATH");
+}
+
 TEST_F(Working, WhoFollowsAPathHearsThatItHasEnded) {
   EXPECT_CODE(ana.ask(PathRequest{"robot1", Frame::kMap, true}), "OK");
   EXPECT_CODE(ana.ask(GoalRequest{"robot1", Frame::kMap, Pose{{5, 1, 0}, {0, 0, 0, 1}}}), "OK");

@@ -36,7 +36,7 @@ Transform some_transform() {
 }
 
 EditRequest edit(EditRequest::Op op, Shape shape) {
-  return {"e-1", "Zoë", op, std::move(shape), {"headset", "h-1"}, Eigen::Vector3d::Zero(), 17, kTime};
+  return {"e-1", "Zoë", op, std::move(shape), {"headset", "h-1"}, Eigen::Vector3d::Zero(), 17, kTime, {"e-0", "é"}};
 }
 
 EditRequest moved(EditRequest edit) {

@@ -72,6 +72,18 @@ TEST(Gate, RequestsAndLinesOfTheLogAreBoundedByNetwork) {
   EXPECT_TRUE(gate.may_ask("2001:db8:0:1::1", kNow + 1'000'000));
 }
 
+TEST(Gate, ManyDevicesOfOneIpv6NetworkComeInAtOnce) {
+  Gate gate([] { return std::string("secret"); });
+  for (int device = 0; device < 40; ++device) {
+    const std::string address = "2001:db8:0:1::" + std::to_string(device);
+    EXPECT_TRUE(gate.may_try(address, kNow) && gate.may_try(address, kNow)) << "a ticket, and with it in";
+  }
+  int tries = 0;
+  for (int i = 0; i < 3000; ++i) tries += gate.may_try("2001:db8:0:1::a" + std::to_string(i), kNow) ? 1 : 0;
+  EXPECT_EQ(tries, 240 - 80) << "of all its addresses together";
+  EXPECT_EQ(network_of("fe80::1%eth0"), network_of("fe80::2%eth1"));
+}
+
 TEST(Gate, AnAddressThatTriesTooOftenWaits) {
   Gate gate(random_secret);
   int tries = 0;

@@ -89,16 +89,19 @@ TEST(EditLayer, KnowsWhatChangedSince) {
   Counting edits;
   edits.apply("one", {{0, 0, 0}}, {});
   edits.apply("two", {{0, 0, 1}}, {});
-  const auto changed = [&](VoxelIndex voxel, std::int64_t base) {
-    return edits.layer.changed_since(by_brick(edit_of({}, {voxel})), base);
+  const auto changed = [&](VoxelIndex voxel, std::int64_t base, const std::vector<std::string>& known = {}) {
+    return edits.layer.changed_since(by_brick(edit_of({}, {voxel})), base, known);
   };
   EXPECT_TRUE(changed({0, 0, 0}, 0));
   EXPECT_FALSE(changed({0, 0, 0}, 1)) << "the later edit in this brick has other voxels";
   EXPECT_TRUE(changed({0, 0, 1}, 1));
   EXPECT_FALSE(changed({0, 0, 1}, 2));
   EXPECT_FALSE(changed({50, 0, 1}, 0));
+  EXPECT_FALSE(changed({0, 0, 0}, 0, {"two", "none", "one"})) << "the asker knows of it";
+  EXPECT_TRUE(changed({0, 0, 0}, 0, {"two"}));
   ASSERT_TRUE(edits.undo("one"));
   EXPECT_TRUE(changed({0, 0, 0}, 2)) << "an undo is a change";
+  EXPECT_TRUE(changed({0, 0, 0}, 2, {"one"})) << "and was not known";
   EXPECT_FALSE(changed({0, 0, 1}, 2));
 }
 

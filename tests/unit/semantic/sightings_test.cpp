@@ -116,8 +116,11 @@ TEST_F(SightingsTest, WhatIsAlwaysOnItsWayIsMovedLessAndLessOftenUntilItLiesStil
   };
   drive(8 * 3600);
   EXPECT_GE(moves, 10);
-  EXPECT_LE(moves, 10 + 8);
-  now_ += 2 * Sightings::kLongestPause;
+  EXPECT_LE(moves, 10 + 8 * 6);
+  for (int minute = 0; minute < 240; ++minute) {
+    now_ += 60'000'000;
+    if (const auto seen = see(at(0), "lift"); seen.moved_to) sightings_.put(1, "a1", *seen.moved_to);
+  }
   const int before = moves;
   drive(60);
   EXPECT_GE(moves, before + 2) << "the next morning";
@@ -150,6 +153,25 @@ TEST_F(SightingsTest, WhatWasDroppedSwallowsNothingOfWhatIsPutThere) {
   EXPECT_EQ(see(at(1.2), "track-7").number, 2);
   for (int i = 1; i < Sightings::kAgreeing; ++i) EXPECT_FALSE(see(at(4.0), "track-7").moved_to);
   EXPECT_TRUE(see(at(4.0), "track-7").moved_to) << "it is carried off";
+}
+
+TEST_F(SightingsTest, WhatIsCarriedOffNowAndThenIsSoonMoved) {
+  ASSERT_TRUE(see(at(0), "pallet").is_new);
+  sightings_.put(1, "c1", at(0));
+  const auto seen_for = [&](const Transform& place, std::int64_t seconds) {
+    for (std::int64_t i = 0; i < seconds; ++i) {
+      now_ += 1'000'000;
+      if (see(place, "pallet").moved_to) {
+        sightings_.put(1, "c1", place);
+        return i;
+      }
+    }
+    return seconds;
+  };
+  for (int move = 1; move <= 30; ++move) {
+    EXPECT_LT(seen_for(at(move), 3000), 15) << "move " << move;
+    EXPECT_EQ(seen_for(at(move), 3000), 3000) << "it lies still";
+  }
 }
 
 TEST_F(SightingsTest, AClockThatIsWrongKeepsNothingAlive) {

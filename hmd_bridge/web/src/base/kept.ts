@@ -3,11 +3,17 @@ import { Signal } from "./signal";
 
 export type Store = Pick<Storage, "getItem" | "setItem">;
 
-/** A signal whose value is written to `store` at each change. @param good whether what is found there is of its kind; else it begins as `first` */
+/** A signal whose value is written to `store` at each change, and follows what another tab writes there. @param good whether what is found there is of its kind; else it begins as `first` */
 export function kept<T>(store: Store, key: string, first: T, good: (value: unknown) => value is T): Signal<T> {
   const found = parsed(store.getItem(key));
   const signal = new Signal(good(found) ? found : first);
   signal.onChange((value) => store.setItem(key, JSON.stringify(value)));
+  globalThis.addEventListener?.("storage", (event) => {
+    const { storageArea, key: changed, newValue } = event as StorageEvent;
+    if (storageArea !== store || changed !== key) return;
+    const value = parsed(newValue);
+    signal.set(good(value) ? value : first);
+  });
   return signal;
 }
 

@@ -17,16 +17,19 @@ export interface Draft {
   zones: SceneZone[];
   /** In which order they were prepared. */
   steps: ("edit" | "zone")[];
+  /** Changes of this scene that were sent before, or may have been. */
+  known: string[];
 }
 
 const kMost = 64;
 
 function isDraft(value: unknown): value is Draft {
   if (typeof value !== "object" || value === null) return false;
-  const { revision, voxelBoxes, edits, zones, steps } = value as Partial<Record<keyof Draft, unknown>>;
+  const { revision, voxelBoxes, edits, zones, steps, known } = value as Partial<Record<keyof Draft, unknown>>;
   const all = (list: unknown, struct: string): boolean => Array.isArray(list) && list.length <= kMost && list.every((each) => checkStruct(struct, each) === null);
   const ordered = (list: unknown, step: string): number => (Array.isArray(list) ? list.filter((each) => each === step).length : -1);
   return Number.isSafeInteger(revision) && Number.isSafeInteger(voxelBoxes) && all(edits, "SceneEdit") && all(zones, "SceneZone")
+    && Array.isArray(known) && known.length <= kMost && known.every((each) => typeof each === "string")
     && ordered(steps, "edit") === (edits as unknown[]).length && ordered(steps, "zone") === (zones as unknown[]).length;
 }
 
@@ -44,7 +47,7 @@ export class SceneDraft {
   async get(centre: Vec3, radius: number): Promise<void> {
     const asked = this.ask("scene_get", { frame: "map", centre, radius });
     const scene = await this.news.tell(asked, ({ voxels, zones }) => `Scene taken: ${counted(voxels.boxes.length, "block")} of voxels, ${counted(zones.length, "zone")}. Your edits wait until Send Scene.`);
-    if (scene) this.open.set({ revision: scene.revision, voxelBoxes: scene.voxels.boxes.length, edits: [], zones: [], steps: [] });
+    if (scene) this.open.set({ revision: scene.revision, voxelBoxes: scene.voxels.boxes.length, edits: [], zones: [], steps: [], known: [] });
   }
 
   addEdit(edit: SceneEdit): void {
@@ -60,7 +63,7 @@ export class SceneDraft {
   async send(): Promise<void> {
     const draft = this.open.value;
     if (!draft) return this.news.failed("There is no scene to send. Get Scene takes the one around you.");
-    const body: Requests["scene_send"] = { base_revision: draft.revision, frame: "map", edits: draft.edits, zones: draft.zones };
+    const body: Requests["scene_send"] = { base_revision: draft.revision, frame: "map", edits: draft.edits, zones: draft.zones, known: draft.known };
     const asked = this.ask("scene_send", body);
     const answer = await this.news.tell(asked, ({ edits, zones, stopped }) => (stopped ? null : `Scene sent: ${counted(edits.length, "change")}, ${counted(zones, "zone")}.`));
     if (!answer) return;
@@ -68,7 +71,8 @@ export class SceneDraft {
     if (!answer.stopped) return this.open.set(null);
     const edits = draft.edits.slice(answer.edits.length);
     const zones = draft.zones.slice(answer.zones);
-    this.open.set({ ...draft, revision: answer.revision, edits, zones, steps: [...edits.map(() => "edit" as const), ...zones.map(() => "zone" as const)] });
+    const known = [...draft.known, ...answer.edits, ...(answer.unsure === undefined ? [] : [answer.unsure])].slice(-kMost);
+    this.open.set({ ...draft, edits, zones, known, steps: [...edits.map(() => "edit" as const), ...zones.map(() => "zone" as const)] });
     this.news.failed(`${wordsFor(answer.stopped.code)} ${answer.stopped.message} What came before it is done; the rest waits for Send Scene.`);
   }
 
