@@ -29,7 +29,7 @@ std::string words_of_size(const Asset& asset) {
 
 Outcome list(const Common& common) {
   Live live(common);
-  ListCopy<Asset> copy(live, "out/assets");
+  ListCopy<Asset> copy(live, "semantic", "out/assets");
   const auto assets = copy.wait_synced(live);
   if (!assets) return tl::unexpected(assets.error());
   nlohmann::json all = nlohmann::json::array();

@@ -87,7 +87,7 @@ void add_history(Program& program) {
   command.add_option("--since", options->since, "from then: 2026-11-22T07:15 (local; or with Z, +01:00), or 2h ago");
   command.add_option("--until", options->until, "before then");
   command.add_option("--after", options->after, "only above this revision")->check(CLI::NonNegativeNumber);
-  command.add_option("--most", options->most, "at most so many")->check(CLI::PositiveNumber);
+  command.add_option("--most", options->most, "at most so many, the oldest first")->check(CLI::PositiveNumber);
   command.add_option("--export", options->file, "writes a .json or .csv file instead");
 }
 

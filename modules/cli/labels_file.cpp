@@ -46,7 +46,7 @@ bool is_what_shows(const SemanticCloud& cloud, const std::vector<LabelInstance>&
 /// else: what was put together of them is compared with what semantic says shows.
 tl::expected<SemanticCloud, Failure> copied_cloud(Live& live) {
   StreamCopy map(live, "out/map"), labels(live, "out/labels");
-  ListCopy<LabelSlot> slots(live, "out/label_slots");
+  ListCopy<LabelSlot> slots(live, "semantic", "out/label_slots");
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(live.timeout());
   do {
     for (StreamCopy* copy : {&map, &labels}) {

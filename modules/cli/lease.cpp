@@ -116,7 +116,7 @@ Outcome lease(const Options& options, const Common& common) {
 
 Outcome leases(const Common& common) {
   Live live(common);
-  ListCopy<Lease> copy(live, "out/leases");
+  ListCopy<Lease> copy(live, "merge", "out/leases");
   const auto list = copy.wait_synced(live);
   if (!list) return tl::unexpected(list.error());
   nlohmann::json array = nlohmann::json::array();

@@ -28,7 +28,7 @@ nlohmann::json to_json(const Thing& thing) {
 
 Outcome list(const Common& common) {
   Live live(common);
-  ListCopy<Thing> copy(live, "out/things");
+  ListCopy<Thing> copy(live, "semantic", "out/things");
   const auto things = copy.wait_synced(live);
   if (!things) return tl::unexpected(things.error());
   nlohmann::json all = nlohmann::json::array();

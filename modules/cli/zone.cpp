@@ -88,7 +88,7 @@ Outcome zone(const Options& options, const Common& common) {
 
 Outcome zones(const Common& common) {
   Live live(common);
-  ListCopy<Zone> copy(live, "out/zones");
+  ListCopy<Zone> copy(live, "merge", "out/zones");
   const auto list = copy.wait_synced(live);
   if (!list) return tl::unexpected(list.error());
   nlohmann::json array = nlohmann::json::array();

@@ -79,7 +79,7 @@ TEST(Gate, ManyDevicesOfOneIpv6NetworkComeInAtOnce) {
     EXPECT_TRUE(gate.may_try(address, kNow) && gate.may_try(address, kNow)) << "a ticket, and with it in";
   }
   int tries = 0;
-  for (int i = 0; i < 3000; ++i) tries += gate.may_try("2001:db8:0:1::a" + std::to_string(i), kNow) ? 1 : 0;
+  for (int i = 0; i < 900; ++i) tries += gate.may_try("2001:db8:0:1::a" + std::to_string(i), kNow) ? 1 : 0;
   EXPECT_EQ(tries, 240 - 80) << "of all its addresses together";
   EXPECT_EQ(network_of("fe80::1%eth0"), network_of("fe80::2%eth1"));
 }
