@@ -5,13 +5,12 @@
 
 #include "bridge/ask_semantic.hpp"
 #include "bridge/requests.hpp"
+#include "core/touch.hpp"
 
 namespace concord::hmd {
 namespace {
 
 using Op = concord::LabelRequest::Op;
-
-constexpr double kTouched = 0.001;  ///< metres: edge of the box that says where something is touched
 
 std::string undo_of(const std::string& correction) { return std::string(kLabelUndo) + correction; }
 
@@ -140,10 +139,9 @@ void work_on(Desk& desk, const Ask& ask, const LabelTouchRequest& request) {
   const auto where = desk.place(ask, request.frame);
   if (!where) return desk.refuse(ask, where.error());
   if (!check_name(desk, ask, request.class_name)) return;
-  const Eigen::Vector3d p(vector_of(request.p)), half = Eigen::Vector3d::Constant(kTouched / 2);
   concord::LabelRequest asked = label_request(desk, ask, Op::kTouch);
   asked.name = request.class_name;
-  asked.shape = concord::Box{p - half, p + half};
+  asked.shape = touch_at(vector_of(request.p));
   asked.frame = where->frame;
   const double resolution = desk.context.site.resolution;
   label(desk, ask, std::move(asked),

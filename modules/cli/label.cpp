@@ -9,7 +9,7 @@
 #include "cli/report.hpp"
 #include "cli/selection_options.hpp"
 #include "cli/semantic_commands.hpp"
-#include "semantic/segmentation/segment.hpp"
+#include "core/touch.hpp"
 
 namespace concord {
 namespace {
@@ -29,20 +29,7 @@ const std::map<std::string, Op>& ops() {
   return all;
 }
 
-/// What one touch selects, in the map as it is now. @param map must live as long as `live` handles messages.
-tl::expected<Shape, Failure> touched(Live& live, std::optional<StreamCopy>& map, const std::string& seed) {
-  const auto p = parse_vector(seed);
-  if (!p) return fail(p.error());
-  StreamCopy& copy = map.emplace(live, "out/map");
-  if (const auto synced = copy.wait_synced(live); !synced) return tl::unexpected(synced.error());
-  const double resolution = live.site().resolution;
-  const auto proposal = propose_object(occupied_around(copy.map(), reach_of_touch(*p, resolution)), resolution, *p);
-  if (!proposal) return fail(proposal.error());
-  return VoxelList{resolution, to_boxes(proposal->voxels.voxels())};
-}
-
-tl::expected<void, Failure> fill(const Options& options, Live& live, std::optional<StreamCopy>& map,
-                                 LabelRequest& request) {
+tl::expected<void, Failure> fill(const Options& options, Live& live, LabelRequest& request) {
   if (request.op == Op::kUndo || request.op == Op::kRedo) {
     request.correction_id = options.subject;
     return {};
@@ -67,22 +54,23 @@ tl::expected<void, Failure> fill(const Options& options, Live& live, std::option
     request.frame = options.selection.frame;
     return {};
   }
-  auto shape = touched(live, map, options.seed);
-  if (!shape) return tl::unexpected(shape.error());
-  request.shape = std::move(*shape);
+  const auto p = parse_vector(options.seed);
+  if (!p) return fail(p.error());
+  request.op = Op::kTouch;
+  request.shape = touch_at(*p);
+  request.frame = options.selection.frame;
   return {};
 }
 
 Outcome label(const Options& options, const Common& common) {
   Live live(common);
   if (const auto taken = live.take_resolution(); !taken) return tl::unexpected(taken.error());
-  std::optional<StreamCopy> map;
   LabelRequest request;
   request.id = live.id_or_new(options.id);
   request.author = author_or_user(options.author);
   request.op = ops().at(options.op);
   request.utime = live.bus().now();
-  if (const auto filled = fill(options, live, map, request); !filled) return tl::unexpected(filled.error());
+  if (const auto filled = fill(options, live, request); !filled) return tl::unexpected(filled.error());
   const auto made = std::make_shared<std::optional<LabelInstance>>();
   live.hear<LabelList>("out/label_list", [made, id = request.id](const std::string&, const LabelList& list) {
     if (list.id == id && !list.instances.empty()) *made = list.instances.front();

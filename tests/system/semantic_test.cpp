@@ -114,6 +114,15 @@ TEST_F(SemanticSystemTest, labels_go_to_a_file_and_come_back_to_the_byte) {
   EXPECT_EQ(concord("labels"), labels) << "nothing of it was labelled";
 }
 
+TEST_F(SemanticSystemTest, one_touch_labels_an_object) {
+  ASSERT_NO_FATAL_FAILURE(place_a_robot());
+  concord("edit add --box \"9 9 0 9.8 9.8 0.7\"");
+  ASSERT_TRUE(happens([&] { return is_occupied(map_->map().at({190, 190, 5})); }));
+  const auto touched = concord("label add table --seed \"9.4 9.4 0.4\"");
+  EXPECT_GT(touched["instance"]["voxels"], 500) << touched;
+  EXPECT_EQ(stack_->start_concord(*person_, {"label", "add", "table", "--seed", "30 30 30"}).wait(), 3);
+}
+
 TEST_F(SemanticSystemTest, of_a_file_of_labels_whose_last_is_refused_none_stays) {
   ASSERT_NO_FATAL_FAILURE(place_a_robot());
   concord("label add door --box \"0 0 0 0.2 0.2 0.2\"");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <deque>
 #include <map>
 #include <set>
 #include <vector>
@@ -67,6 +68,29 @@ std::map<Cell, std::set<std::int32_t>> layers_by_column(const std::vector<VoxelI
   return out;
 }
 
+/// Those that hang together with others over at least this many cells, along x or y.
+std::set<Cell> long_parts(std::set<Cell> cells, std::int32_t least) {
+  std::set<Cell> out;
+  while (!cells.empty()) {
+    std::vector<Cell> part;
+    std::deque<Cell> open{*cells.begin()};
+    cells.erase(cells.begin());
+    Cell low = open.front(), high = open.front();
+    while (!open.empty()) {
+      const auto [x, y] = part.emplace_back(open.front());
+      open.pop_front();
+      low = {std::min(low.first, x), std::min(low.second, y)};
+      high = {std::max(high.first, x), std::max(high.second, y)};
+      for (int i = 0; i < 9; ++i) {
+        const Cell next{x + i % 3 - 1, y + i / 3 - 1};
+        if (cells.erase(next) != 0) open.push_back(next);
+      }
+    }
+    if (std::max(high.first - low.first, high.second - low.second) >= least) out.insert(part.begin(), part.end());
+  }
+  return out;
+}
+
 }  // namespace
 
 RoomPlanes find_room_planes(const BrickMasks& occupied, double resolution) {
@@ -76,7 +100,7 @@ RoomPlanes find_room_planes(const BrickMasks& occupied, double resolution) {
   const Layers layers = layers_of(voxels);
   out.floor_z = level(layers, layers.count.begin(), layers.count.end(), resolution);
   out.ceiling_z = level(layers, layers.count.rbegin(), layers.count.rend(), resolution);
-  if (out.floor_z == out.ceiling_z) out.ceiling_z.reset();
+  if (out.floor_z && out.ceiling_z && *out.ceiling_z - *out.floor_z < kLeastHeight / resolution) out.ceiling_z.reset();
   const std::int32_t floor = out.floor_z.value_or(layers.count.begin()->first);
   const std::int32_t ceiling = out.ceiling_z.value_or(layers.count.rbegin()->first);
 
@@ -87,6 +111,7 @@ RoomPlanes find_room_planes(const BrickMasks& occupied, double resolution) {
   for (const auto& [cell, filled] : layers_by_column(voxels, low, high)) {
     if (static_cast<double>(filled.size()) >= kWallFilled * (high - low + 1)) walls.insert(cell);
   }
+  if (!out.ceiling_z) walls = long_parts(std::move(walls), static_cast<std::int32_t>(kLeastWall / resolution));
   const std::int32_t floor_face = face_of(layers, floor, 1), ceiling_face = face_of(layers, ceiling, -1);
   for (const VoxelIndex v : voxels) {
     // A floor leans by a voxel too; what stands above its lowest voxel stands on it.

@@ -19,11 +19,13 @@ struct RoomPlanes {
 /// from above; either with the layers next to it, up to four, that have half as many voxels. Walls: columns that are
 /// occupied in most layers of the band from kWallLow to kWallHigh of the room's height, to which furniture does not
 /// reach; a wall may lean by a voxel, and is as thick as it is seen. A map without floor or ceiling (a robot's) has its
-/// lowest and highest layer for them.
+/// lowest and highest layer for them; without a ceiling furniture may be as high as the map, so walls are long.
 [[nodiscard]] RoomPlanes find_room_planes(const BrickMasks& occupied, double resolution);
 
 inline constexpr double kFloorArea = 1.0;  ///< square metres
 inline constexpr double kWallLow = 0.65, kWallHigh = 0.95;
-inline constexpr double kWallFilled = 0.7;  ///< of the band's layers
+inline constexpr double kLeastHeight = 1.5;  ///< metres from a floor to its ceiling
+inline constexpr double kLeastWall = 1.5;    ///< metres along x or y, where no ceiling is seen
+inline constexpr double kWallFilled = 0.7;   ///< of the band's layers
 
 }  // namespace concord

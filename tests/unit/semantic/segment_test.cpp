@@ -76,6 +76,21 @@ TEST(Segment, AFloorThatIsSeenThreeVoxelsThickIsNoObject) {
   EXPECT_LT(proposal->voxels.count(), 2 * (room.seat.count() + room.back.count()));
 }
 
+TEST(Segment, WithoutACeilingTheHighestThingIsStillNoWall) {
+  BrickMasks floor = box({0.01, 0.01, 0.01}, {5.01, 4.01, 0.02});
+  floor.insert(box({0.01, 0.01, 0.01}, {0.02, 4.01, 0.99}));  // a wall as high as the map
+  const auto solid = voxelize(box_mesh({2.01, 1.51, 0.06}, {2.79, 2.29, 0.99}), {}, kResolution, Fill::kSolid);
+  BrickMasks crate = solid->surface;
+  crate.insert(solid->interior);
+  BrickMasks all = floor;
+  all.insert(crate);
+  const auto proposal = propose_object(all, kResolution, {2.4, 1.9, 0.5});
+  ASSERT_TRUE(proposal);
+  EXPECT_GT(share_of(crate, proposal->voxels), 0.95);
+  EXPECT_EQ(share_of(floor, proposal->voxels), 0.0);
+  EXPECT_EQ(propose_object(all, kResolution, {0.02, 0.5, 0.6}).error().code, Code::kEmpty);
+}
+
 TEST(Segment, TouchingAWallFarFromAllProposesNothing) {
   EXPECT_EQ(propose_object(Room().all(), kResolution, {0.01, 3.5, 1.5}).error().code, Code::kEmpty);
   EXPECT_EQ(propose_object({}, kResolution, {0, 0, 0}).error().code, Code::kEmpty);
