@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <ranges>
 
 #include "core/text.hpp"
 #include "core/voxel_runs.hpp"
@@ -28,13 +27,14 @@ std::string words(InstanceId of) {
 /// One that was never given: after the highest; where a map was loaded that has the last of all, the first that is
 /// left.
 /// @param given ascending, fewer than there are numbers
-template <class Numbers>
-std::uint32_t next(const Numbers& given) {
+/// @param number_of one of them
+template <class Given, class NumberOf = std::identity>
+std::uint32_t next(const Given& given, NumberOf number_of = {}) {
   std::uint32_t gap = 1;
-  if (std::ranges::empty(given)) return gap;
-  if (const std::uint32_t highest = *std::ranges::rbegin(given); highest < kMostGiven) return highest + 1;
-  for (const std::uint32_t number : given) {
-    if (number != gap) break;
+  if (given.empty()) return gap;
+  if (const std::uint32_t highest = number_of(*given.rbegin()); highest < kMostGiven) return highest + 1;
+  for (const auto& one : given) {
+    if (number_of(one) != gap) break;
     ++gap;
   }
   return gap;
@@ -122,7 +122,7 @@ Result<Claim> Labels::numbered(const LabelRequest& request) const {
     if (const auto there = check_instance({*known, request.of.instance}); !there) return tl::unexpected(there.error());
   } else {
     if (request.of.instance != 0) return refuse(Code::kNotFound, "no class " + request.name + "; see: concord labels");
-    claim.of.label = next(std::views::keys(classes_));
+    claim.of.label = next(classes_, [](const auto& entry) { return entry.first; });
     claim.class_name = request.name;
   }
   claim.of.instance = request.of.instance;

@@ -3,7 +3,7 @@ import { test } from "node:test";
 import type { EventMessage } from "../../../hmd_bridge/web/src/protocol/envelope";
 import type { HelloAnswer, Pose } from "../../../hmd_bridge/web/generated/messages";
 import { Link, type Socket } from "../../../hmd_bridge/web/src/link/link";
-import { RefusedError, wordsFor } from "../../../hmd_bridge/web/src/link/failures";
+import { RefusedError, sayRefusal, wordsFor } from "../../../hmd_bridge/web/src/link/failures";
 import { ServerClock } from "../../../hmd_bridge/web/src/link/clock";
 import { World } from "../../../hmd_bridge/web/src/link/world";
 import { pointsFrame } from "../support/voxel_map";
@@ -74,6 +74,11 @@ class Bench {
     this.timers.findLast((timer) => timer.milliseconds === milliseconds)!.what();
   }
 }
+
+test("a refusal is said in words, and what the server adds beside them", () => {
+  assert.equal(sayRefusal({ code: "NO_MAP", message: "" }), "There is no map yet.");
+  assert.equal(sayRefusal({ code: "IO", message: "the disk is full" }), "The server could not write or read its disk. (the disk is full)");
+});
 
 test("hello comes first, then credit; answers find their requests in any order", async () => {
   const bench = new Bench();

@@ -7,7 +7,7 @@ import { kept, type Store } from "../base/kept";
 import { counted, type News } from "../base/news";
 import type { Signal } from "../base/signal";
 import type { Vec3 } from "../base/vec";
-import { wordsFor } from "../link/failures";
+import { sayRefusal } from "../link/failures";
 import type { Ask } from "../link/link";
 
 export interface Draft {
@@ -73,7 +73,7 @@ export class SceneDraft {
     const zones = draft.zones.slice(answer.zones);
     const known = [...draft.known, ...answer.edits, ...(answer.unsure === undefined ? [] : [answer.unsure])].slice(-kMost);
     this.open.set({ ...draft, edits, zones, known, steps: [...edits.map(() => "edit" as const), ...zones.map(() => "zone" as const)] });
-    this.news.failed(`${wordsFor(answer.stopped.code)} ${answer.stopped.message} What came before it is done; the rest waits for Send Scene.`);
+    this.news.failed(`${sayRefusal(answer.stopped)} What came before it is done; the rest waits for Send Scene.`);
   }
 
   /** A change of it is done, and can be undone by this id. */

@@ -3,7 +3,7 @@ import type { Code, Refusal } from "../../generated/messages";
 
 export class RefusedError extends Error {
   constructor(readonly refusal: Refusal) {
-    super(`${wordsFor(refusal.code)} ${refusal.message}`);
+    super(sayRefusal(refusal));
   }
 }
 
@@ -57,6 +57,9 @@ const kWords: Record<Code, string> = {
 };
 
 export const wordsFor = (code: Code): string => kWords[code];
+
+export const sayRefusal = ({ code, message }: Pick<Refusal, "code" | "message">): string =>
+  message === "" ? wordsFor(code) : `${wordsFor(code)} (${message})`;
 
 /** For a message to a person, whatever went wrong. */
 export function explain(error: unknown): string {

@@ -110,7 +110,7 @@ function mapsSection(app: App): HTMLElement {
     if (answer) maps.set(answer.maps);
   };
   const name = el("input", { type: "text", placeholder: "name, such as ground-floor", maxlength: 40, "aria-label": "Name of the saved map" });
-  const format = select([{ value: "concord", title: "Concord: with agents, edits, zones" }, { value: "bt", title: "OctoMap .bt" }, { value: "ot", title: "OctoMap .ot" }], { "aria-label": "Format" });
+  const format = select([{ value: "concord", title: "Concord: everything" }, { value: "bt", title: "OctoMap .bt" }, { value: "ot", title: "OctoMap .ot" }], { "aria-label": "Format" });
   const over = el("input", { type: "checkbox" });
   const save = async (): Promise<void> => {
     const formats = [format.value as "concord" | "bt" | "ot"];

@@ -72,8 +72,8 @@ function classesSection(app: App): HTMLElement {
     const { labels: first, in_all: inAll } = labels.value;
     if (inAll === 0) return [none("There are no labels.")];
     const rows = first.map((label) => {
-      const name = el("input", { type: "text", maxlength: 40, class: "short", "aria-label": `New name of ${label.name}` });
-      return el("div", { class: "row between" }, `${label.name}: ${counted(label.instances, "thing")}`, name,
+      const name = el("input", { type: "text", maxlength: 40, placeholder: "another name", "aria-label": `New name of ${label.name}` });
+      return el("div", { class: "row" }, el("span", { class: "line" }, `${label.name}: ${counted(label.instances, "thing")}`), name,
         button("Rename", () => void rename(label, name.value.trim()), { disabled: !app.mayEdit, "aria-label": `Rename the label ${label.name}` }),
         button("Drop", () => void remove(label), { class: "danger", disabled: !app.mayEdit, "aria-label": `Drop the label ${label.name}` }));
     });
