@@ -28,11 +28,12 @@ struct TrueBox {
   std::string label;
   std::vector<Eigen::Vector3d> corners;  ///< [0] to [1], [2] and [4] are its edges
 
-  [[nodiscard]] bool holds(const Eigen::Vector3d& p) const {
+  /// @param beyond metres by which a point may lie outside
+  [[nodiscard]] bool holds(const Eigen::Vector3d& p, double beyond = 0.0) const {
     for (const int i : {1, 2, 4}) {
       const Eigen::Vector3d edge = corners[static_cast<std::size_t>(i)] - corners[0];
-      const double along = (p - corners[0]).dot(edge) / edge.squaredNorm();
-      if (along < 0.0 || along > 1.0) return false;
+      const double along = (p - corners[0]).dot(edge) / edge.norm();
+      if (along < -beyond || along > edge.norm() + beyond) return false;
     }
     return true;
   }
@@ -62,6 +63,8 @@ double iou(const BrickMasks& truth, const BrickMasks& proposed) {
 struct Score {
   double at_centre = 0.0, spread = 0.0;
   double without_room = 0.0;  ///< at the centre; floor and walls that lie in the box are not asked for
+  double near_box = 0.0;      ///< so, too, and what lies within a voxel of the box is asked for
+  double best = 0.0;          ///< what all furniture within a voxel of the box would have instead of `at_centre`
   std::int64_t voxels = 0, proposed = 0;
   int kind = -1;
 };
@@ -69,10 +72,11 @@ struct Score {
 /// The seed is the occupied voxel nearest to the box's centre, as if touched from there; `spread` is the mean over
 /// seeds all over the object above its lowest layer.
 Score score(const BrickMasks& occupied, const BrickMasks& room, const TrueBox& box) {
-  BrickMasks truth;
+  BrickMasks truth, near_box;
   std::vector<VoxelIndex> in_box;
   for (const VoxelIndex v : occupied.voxels()) {
     if (box.holds(centre_of(v, kResolution))) in_box.push_back(v), truth.insert(v);
+    if (box.holds(centre_of(v, kResolution), kResolution)) near_box.insert(v);
   }
   Score out;
   out.voxels = truth.count();
@@ -94,7 +98,10 @@ Score score(const BrickMasks& occupied, const BrickMasks& room, const TrueBox& b
   const auto proposal = propose_object(occupied, kResolution, box.centre());
   BrickMasks furniture = truth;
   furniture.erase(room);
+  near_box.erase(room);
+  out.best = iou(truth, near_box);
   out.without_room = proposal ? iou(furniture, proposal->voxels) : 0.0;
+  out.near_box = proposal ? iou(near_box, proposal->voxels) : 0.0;
   return out;
 }
 
@@ -120,24 +127,31 @@ int main(int argc, char** argv) {
     for (const TrueBox& box : boxes_of(fs::path(room).replace_extension(".labels.json"))) {
       const Score one = score(voxels->surface, find_room_planes(voxels->surface, kResolution).voxels, box);
       static constexpr const char* kKinds[] = {"none", "flat top", "upright", "cluster"};
-      std::printf(
-          "%-14s %-8s %6lld true, %6lld proposed as %-8s IoU %.2f (without floor and walls %.2f), all over it %.2f\n",
-          room.stem().c_str(), box.label.c_str(), static_cast<long long>(one.voxels),
-          static_cast<long long>(one.proposed), kKinds[one.kind + 1], one.at_centre, one.without_room, one.spread);
+      std::printf("%-14s %-8s %6lld true, %6lld proposed as %-8s ", room.stem().c_str(), box.label.c_str(),
+                  static_cast<long long>(one.voxels), static_cast<long long>(one.proposed), kKinds[one.kind + 1]);
+      std::printf("IoU %.2f of at best %.2f (without floor and walls %.2f, with what is near %.2f), all over it %.2f\n",
+                  one.at_centre, one.best, one.without_room, one.near_box, one.spread);
       if (one.voxels > 10) classes[box.label].push_back(one);
     }
   }
   nlohmann::json out;
   for (const auto& [label, scores] : classes) {
-    double centre = 0, spread = 0, without = 0;
-    for (const Score& one : scores) centre += one.at_centre, spread += one.spread, without += one.without_room;
-    const auto n = static_cast<double>(scores.size());
-    std::printf("%-8s %2zu objects: mean IoU %.2f (without floor and walls %.2f), all over it %.2f\n", label.c_str(),
-                scores.size(), centre / n, without / n, spread / n);
+    const auto mean = [&scores = scores](double Score::*of) {
+      double sum = 0.0;
+      for (const Score& one : scores) sum += one.*of;
+      return sum / static_cast<double>(scores.size());
+    };
     out[label] = {{"objects", scores.size()},
-                  {"iou", centre / n},
-                  {"iou_without_room", without / n},
-                  {"iou_all_over", spread / n}};
+                  {"iou", mean(&Score::at_centre)},
+                  {"iou_at_best", mean(&Score::best)},
+                  {"iou_without_room", mean(&Score::without_room)},
+                  {"iou_near_box", mean(&Score::near_box)},
+                  {"iou_all_over", mean(&Score::spread)}};
+    std::printf("%-8s %2zu objects:", label.c_str(), scores.size());
+    for (const auto& [name, value] : out[label].items()) {
+      if (name != "objects") std::printf(" %s %.2f", name.c_str(), value.get<double>());
+    }
+    std::printf("\n");
   }
   if (json) std::printf("%s\n", out.dump().c_str());
   return 0;

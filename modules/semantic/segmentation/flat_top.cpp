@@ -220,4 +220,26 @@ std::optional<FlatTop> find_flat_top(const BrickMasks& free_of_room, std::int32_
   return std::nullopt;
 }
 
+void reach_walls(FlatTop& top, const BrickMasks& room, double resolution) {
+  const int gap = voxels_in(kGapToWall, resolution), high = voxels_in(kFlatHeadroom, resolution);
+  const auto is_wall = [&](Cell cell) {
+    for (std::int32_t z = top.z; z <= top.z + high; ++z) {
+      if (room.contains({cell.first, cell.second, z})) return true;
+    }
+    return false;
+  };
+  std::set<Cell> between;
+  for (const auto& entry : top.cells) {
+    for (const auto& d : kBeside) {
+      const Cell& cell = entry.first;  // clang 14 captures no structured binding
+      const auto beside = [&](int step) { return Cell{cell.first + step * d.first, cell.second + step * d.second}; };
+      int step = 1;
+      while (step <= gap + 1 && !top.cells.contains(beside(step)) && !is_wall(beside(step))) ++step;
+      if (step > gap + 1 || top.cells.contains(beside(step))) continue;
+      while (--step > 0) between.insert(beside(step));
+    }
+  }
+  for (const Cell& cell : between) top.cells.emplace(cell, top.z);
+}
+
 }  // namespace concord

@@ -33,9 +33,15 @@ struct FlatTop {
 [[nodiscard]] std::optional<FlatTop> find_flat_top(const BrickMasks& free_of_room, std::int32_t floor_z,
                                                    VoxelIndex seed, double resolution);
 
+/// Of furniture that stands against a wall, adds the columns between its top and the wall, up to kGapToWall: where a
+/// scan rounds the corner off, they are level with neither.
+/// @param room see RoomPlanes::voxels
+void reach_walls(FlatTop& top, const BrickMasks& room, double resolution);
+
 inline constexpr double kFlatOff = 0.1;  ///< metres, as all of these
 inline constexpr double kFlatSide = 0.15;
 inline constexpr double kFlatHeadroom = 0.2;
+inline constexpr double kGapToWall = 0.2;
 inline constexpr double kLeastFlatWidth = 0.3;             ///< of a top; less is an edge or a shelf's front
 inline constexpr double kMostFlatExtent = 4.0;             ///< from the seed
 inline constexpr double kSeatLow = 0.25, kSeatHigh = 0.6;  ///< above the floor

@@ -117,7 +117,8 @@ Result<Proposal> propose_object(const BrickMasks& occupied, double resolution, c
     return refuse(Code::kEmpty, "there is no object within 0.5 m of the seed; floor, walls and ceiling are none");
   const std::int32_t floor_z = room.floor_z.value_or(seed->z - voxels_in(1.5, resolution));
 
-  if (const auto top = find_flat_top(free_of_room, floor_z, *seed, resolution)) {
+  if (auto top = find_flat_top(free_of_room, floor_z, *seed, resolution)) {
+    reach_walls(*top, room.voxels, resolution);
     return Proposal{below(*top, free_of_room, floor_z, resolution), Proposal::Kind::kFlatTopped};
   }
   const auto support = support_below(free_of_room, floor_z, *seed, resolution);

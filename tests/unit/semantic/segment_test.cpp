@@ -48,6 +48,21 @@ TEST(Segment, ATouchOnATableIsTheTableAndNotWhatStandsOnItNorTheFloor) {
   EXPECT_EQ(share_of(room.seat, proposal->voxels), 0.0);
 }
 
+TEST(Segment, WhatIsBetweenATableAndItsWallIsTheTables) {
+  const Room room;
+  const BrickMasks desk = box({0.21, 2.51, 0.71}, {1.01, 3.51, 0.74});  // three columns from the wall
+  const BrickMasks edge = box({0.11, 2.51, 0.51}, {0.19, 3.51, 0.54});  // where it was hardly seen
+  const BrickMasks apart = box({1.31, 2.51, 0.51}, {1.34, 3.51, 0.54});
+  BrickMasks all = room.all();
+  for (const BrickMasks* part : {&desk, &edge, &apart}) all.insert(*part);
+  const auto proposal = propose_object(all, kResolution, {0.6, 3.0, 0.74});
+  ASSERT_TRUE(proposal);
+  EXPECT_GT(share_of(desk, proposal->voxels), 0.95);
+  EXPECT_GT(share_of(edge, proposal->voxels), 0.9);
+  EXPECT_EQ(share_of(apart, proposal->voxels), 0.0);
+  EXPECT_EQ(share_of(room.shell, proposal->voxels), 0.0);
+}
+
 TEST(Segment, ATouchOnAScreenIsTheScreen) {
   const Room room;
   const auto proposal = propose_object(room.all(), kResolution, {1.8, 1.3, 1.0});
